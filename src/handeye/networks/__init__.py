@@ -1,0 +1,20 @@
+"""Resource-allocating networks: online regressors that know nothing of robots."""
+
+from handeye.networks.adaptation import CMAC as CMAC
+from handeye.networks.adaptation import GradientDescent as GradientDescent
+from handeye.networks.adaptation import NoAdaptation as NoAdaptation
+from handeye.networks.adaptation import VirtualNeuron as VirtualNeuron
+from handeye.networks.grids import fixed_grid as fixed_grid
+from handeye.networks.grids import variable_grid as variable_grid
+from handeye.networks.inputs import InputSpace as InputSpace
+from handeye.networks.network import ResourceAllocatingNetwork as ResourceAllocatingNetwork
+from handeye.networks.outcomes import Learned as Learned
+from handeye.networks.outcomes import LearnedMany as LearnedMany
+from handeye.networks.outcomes import LearningDiverged as LearningDiverged
+from handeye.networks.responses import Cosine as Cosine
+from handeye.networks.responses import Gaussian as Gaussian
+from handeye.networks.responses import Parabolic as Parabolic
+from handeye.networks.schedules import Constant as Constant
+from handeye.networks.schedules import GaussianDecay as GaussianDecay
+from handeye.networks.schedules import Logarithmic as Logarithmic
+from handeye.networks.schedules import Power as Power
