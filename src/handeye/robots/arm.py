@@ -1,0 +1,38 @@
+"""What the rest of the package needs to know of an arm: a chain of joints from base to flange."""
+
+from typing import Protocol
+
+from handeye.arrays import Array
+
+
+class Arm(Protocol):
+    """Forward kinematics of a serial arm with n joints.
+
+    name         for messages and reports
+    joint_names  in the order of every joint array, base first
+    lower, upper joint limits (n,) [rad] (of a sliding joint [m]); infinite where there is none
+    reach        upper bound of the distance from the base's origin to the flange's [m]
+    """
+
+    @property
+    def name(self) -> str: ...  # noqa: D102
+    @property
+    def joint_names(self) -> tuple[str, ...]: ...  # noqa: D102
+    @property
+    def lower(self) -> Array: ...  # noqa: D102
+    @property
+    def upper(self) -> Array: ...  # noqa: D102
+    @property
+    def reach(self) -> float: ...  # noqa: D102
+
+    def poses(self, joints: Array) -> Array:
+        """T_base_flange (N, 4, 4) at joints (N, n)."""
+        ...
+
+    def jacobians(self, joints: Array) -> Array:
+        """Velocity of the flange per joint velocity, (N, 6, n), at joints (N, n).
+
+        Rows 0-2 are the linear velocity of the flange's origin [m/rad], rows 3-5 the angular
+        velocity [rad/rad], both in the axes of the base.
+        """
+        ...

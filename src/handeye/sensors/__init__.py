@@ -1,0 +1,3 @@
+"""Eyes: what they measure, how noisily, and how they distort it."""
+
+from handeye.sensors.stereo import StereoHead as StereoHead
