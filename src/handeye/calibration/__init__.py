@@ -1,0 +1,31 @@
+"""Hand-eye calibration, learned while the robot works: worlds, calibrators, sessions."""
+
+from handeye.calibration.calibrator import Calibrator as Calibrator
+from handeye.calibration.calibrator import Feedback as Feedback
+from handeye.calibration.calibrators import NetworkCorrection as NetworkCorrection
+from handeye.calibration.calibrators import Nominal as Nominal
+from handeye.calibration.drift import Drift as Drift
+from handeye.calibration.drift import OffsetStep as OffsetStep
+from handeye.calibration.drift import Thermal as Thermal
+from handeye.calibration.log_run import Calibration as Calibration
+from handeye.calibration.log_run import calibrate_log as calibrate_log
+from handeye.calibration.models import HandEyeModel as HandEyeModel
+from handeye.calibration.models import PlanarMap as PlanarMap
+from handeye.calibration.models import PlanarModel as PlanarModel
+from handeye.calibration.placed_arm import PlacedArm as PlacedArm
+from handeye.calibration.placement import Placement as Placement
+from handeye.calibration.placement import PlacementFit as PlacementFit
+from handeye.calibration.placement import estimate_placement as estimate_placement
+from handeye.calibration.plant import PlanarPlant as PlanarPlant
+from handeye.calibration.results import CalibrationResult as CalibrationResult
+from handeye.calibration.results import ErrorSummary as ErrorSummary
+from handeye.calibration.results import HeldOut as HeldOut
+from handeye.calibration.session import LearningCurve as LearningCurve
+from handeye.calibration.session import WorldStreams as WorldStreams
+from handeye.calibration.session import learn_from_log as learn_from_log
+from handeye.calibration.session import learn_in_world as learn_in_world
+from handeye.calibration.session import position_errors as position_errors
+from handeye.calibration.storage import load_model as load_model
+from handeye.calibration.storage import save_model as save_model
+from handeye.calibration.world import PlanarWorld as PlanarWorld
+from handeye.calibration.world import Region as Region

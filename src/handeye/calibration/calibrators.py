@@ -1,0 +1,112 @@
+"""Calibrators: what learns where the hand goes."""
+
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from handeye.arrays import Array
+from handeye.calibration.calibrator import Feedback
+from handeye.calibration.models import AnyModel, Correct, HandEyeModel
+from handeye.errors import InvalidInput
+from handeye.networks import ResourceAllocatingNetwork
+from handeye.observations import Observation, Target
+
+O = TypeVar("O", bound=Observation)  # noqa: E741 (the thesis's letter for neither: O observation)
+T = TypeVar("T", bound=Target)
+
+
+class Nominal(Generic[O, T]):
+    """Trusts the model and learns nothing: what every calibrator is compared with."""
+
+    def __init__(self, model: HandEyeModel[O, T]) -> None:
+        self.model = model
+
+    def observe(self, observation: O) -> Feedback:
+        """Report the error of the nominal model for one observation."""
+        feedback = self.observe_many(_batch(observation))
+        return Feedback(feedback.error[0], feedback.allocated[0])
+
+    def observe_many(self, observations: O) -> Feedback:
+        """The same for N observations."""
+        needed = self.model.needed(observations)
+        error = self.model.displacement(observations, needed)
+        return Feedback(error, np.zeros(len(observations), np.bool_))
+
+    def command(self, target: T) -> Array:
+        """Nominal joint commands for one target or N."""
+        return _command(self.model, target, self._nothing)
+
+    def __repr__(self) -> str:
+        """The kind of model."""
+        return f"Nominal({type(self.model).__name__})"
+
+    def _nothing(self, inputs: Array) -> Array:
+        return np.zeros((len(inputs), self.model.n_outputs))
+
+
+class NetworkCorrection(Generic[O, T]):
+    """Adds a correction, learned by a resource-allocating network, to the model (section 3.5).
+
+    Each observation gives the correction that would have been right, `needed = measured - nominal`;
+    the network learns it as one sample (figure 3.5). A fresh network corrects nothing.
+
+    Args:
+        model: nominal kinematics and where the correction enters.
+        network: by default the preferred network of section 3.5.4 over the model's inputs, with
+            the model's resolution as its error thresholds.
+
+    Raises:
+        InvalidInput: a network whose inputs or outputs do not fit the model.
+    """
+
+    def __init__(
+        self, model: HandEyeModel[O, T], network: ResourceAllocatingNetwork | None = None
+    ) -> None:
+        space = model.space
+        self.model = model
+        self.network = network or ResourceAllocatingNetwork(
+            space.n_inputs,
+            model.n_outputs,
+            inputs=space,
+            error_threshold=model.resolution,
+            learning_threshold=model.resolution,
+        )
+        have = (self.network.n_inputs, self.network.n_outputs)
+        if have != (space.n_inputs, model.n_outputs):
+            raise InvalidInput(
+                f"{type(model).__name__} needs a network of {space.n_inputs} inputs and "
+                f"{model.n_outputs} outputs, got {have[0]} and {have[1]}"
+            )
+
+    def observe(self, observation: O) -> Feedback:
+        """Learn from one observation; report the error made before learning."""
+        feedback = self.observe_many(_batch(observation))
+        return Feedback(feedback.error[0], feedback.allocated[0])
+
+    def observe_many(self, observations: O) -> Feedback:
+        """Learn from N observations in order: the same result as one by one."""
+        learned = self.network.learn_many(
+            self.model.features(observations), self.model.needed(observations)
+        )
+        return Feedback(self.model.displacement(observations, learned.error), learned.allocated)
+
+    def command(self, target: T) -> Array:
+        """Corrected joint commands for one target or N."""
+        return _command(self.model, target, self.network.predict_many)
+
+    def __repr__(self) -> str:
+        """The kind of model, and the network."""
+        return f"NetworkCorrection({type(self.model).__name__}, {self.network!r})"
+
+
+def _batch(one: Any) -> Any:
+    """One observation or target as a batch of one."""
+    return one[np.newaxis]
+
+
+def _command(model: AnyModel, target: Any, correct: Correct) -> Array:
+    try:
+        len(target)
+    except TypeError:
+        return model.command(_batch(target), correct)[0]
+    return model.command(target, correct)

@@ -1,0 +1,142 @@
+"""A calibrated model as one file: the nominal robot, its frames, and what was learned."""
+
+from dataclasses import asdict, dataclass
+from os import PathLike
+from typing import Any
+
+from handeye.arrays import Array
+from handeye.calibration.calibrators import NetworkCorrection, Nominal
+from handeye.calibration.estimation.parameter_estimator import ParameterEstimator
+from handeye.calibration.estimation.storage import estimator_from_arrays, estimator_to_arrays
+from handeye.calibration.models import PlanarMap, PlanarModel
+from handeye.calibration.placed_arm import PlacedArm
+from handeye.calibration.placement import Placement
+from handeye.calibration.plant import PlanarPlant
+from handeye.calibration.session import AfterEach, AnyCalibrator
+from handeye.errors import FileFormatError, InvalidInput
+from handeye.io.tensors import Header, read_tensors, write_tensors
+from handeye.networks.storage import from_arrays, to_arrays
+from handeye.robots.encoder import AxisEncoder
+from handeye.robots.planar import TwoLinkArm
+from handeye.robots.urdf import UrdfArm
+from handeye.sensors.stereo import StereoHead
+
+FORMAT = "handeye.model"
+VERSION = 1
+
+Parts = tuple[dict[str, Array], Header]
+
+
+@dataclass(frozen=True)
+class StoredModel:
+    """A calibrator as it was saved, after so many observations."""
+
+    calibrator: AnyCalibrator
+    observed: int
+
+
+def save_model(path: str | PathLike[str], calibrator: AnyCalibrator, observed: int) -> None:
+    """Write a Nominal, NetworkCorrection or ParameterEstimator; an old file is replaced at the end.
+
+    Raises:
+        InvalidInput: a calibrator or a model of another kind, or an arm that is not from a URDF.
+    """
+    if not isinstance(calibrator, Nominal | NetworkCorrection | ParameterEstimator):
+        raise InvalidInput(f"a {type(calibrator).__name__} cannot be stored yet")
+    arrays, header = _model_parts(calibrator.model)
+    header |= {"calibrator": type(calibrator).__name__, "observed": observed}
+    if isinstance(calibrator, NetworkCorrection):
+        network, header["network"] = to_arrays(calibrator.network)
+        arrays |= {f"network.{name}": array for name, array in network.items()}
+    if isinstance(calibrator, ParameterEstimator):
+        learned, header["estimator"] = estimator_to_arrays(calibrator)
+        arrays |= {f"estimator.{name}": array for name, array in learned.items()}
+    write_tensors(path, FORMAT, VERSION, arrays, header)
+
+
+def load_model(path: str | PathLike[str]) -> StoredModel:
+    """Read what `save_model` wrote.
+
+    Raises:
+        FileFormatError: no such file, damaged, foreign, or from a newer version.
+        MissingExtra: a model of a URDF arm without pinocchio.
+    """
+    arrays, header = read_tensors(path, FORMAT, VERSION, "a calibrated handeye model")
+    try:
+        model = _model_from(arrays, header)
+        if header["calibrator"] == "Nominal":
+            return StoredModel(Nominal(model), int(header["observed"]))
+        if header["calibrator"] == "ParameterEstimator":
+            prefix = "estimator."
+            learned = {n[len(prefix) :]: a for n, a in arrays.items() if n.startswith(prefix)}
+            estimator = estimator_from_arrays(model, learned, header["estimator"])
+            return StoredModel(estimator, int(header["observed"]))
+        inside = {n.removeprefix("network."): a for n, a in arrays.items() if "network." in n}
+        network = from_arrays(inside, header["network"])
+        return StoredModel(NetworkCorrection(model, network), int(header["observed"]))
+    except (
+        FileFormatError, LookupError, OverflowError, TypeError, ValueError,
+    ) as error:  # fmt: skip
+        raise FileFormatError(
+            f"{path}: damaged, its parts do not fit together ({error})"
+        ) from error
+
+
+def checkpoints(path: str | PathLike[str], calibrator: AnyCalibrator, every: int) -> AfterEach:
+    """An `after_each` that saves the calibrator whenever `every` more observations are learned."""
+    saved = 0
+
+    def after_each(done: int) -> None:
+        nonlocal saved
+        if done - saved >= every:
+            save_model(path, calibrator, done)
+            saved = done
+
+    return after_each
+
+
+def _model_parts(model: Any) -> Parts:
+    match model:
+        case PlanarModel():
+            header = {"foveate": model.foveate, "nominal": asdict(model.nominal)}
+            arrays: dict[str, Array] = {}
+        case PlanarMap():
+            header, arrays = {"nominal": asdict(model.nominal)}, {}
+        case PlacedArm(arm=UrdfArm() as arm):
+            header = {"urdf": arm.urdf, "tip": arm.tip, "name": arm.name}
+            arrays = {
+                "T_sensor_base": model.placement.T_sensor_base,
+                "T_flange_marker": model.placement.T_flange_marker,
+                "low": model.low,
+                "high": model.high,
+            }
+        case _:
+            raise InvalidInput(f"a model of {model!r} cannot be stored")
+    return arrays, {"model": type(model).__name__, "resolution": model.resolution, **header}
+
+
+def _model_from(arrays: dict[str, Array], header: Header) -> Any:
+    resolution = float(header["resolution"])
+    match header["model"]:
+        case "PlanarModel":
+            return PlanarModel(_plant(header["nominal"]), bool(header["foveate"]), resolution)
+        case "PlanarMap":
+            return PlanarMap(_plant(header["nominal"]), resolution)
+        case "PlacedArm":
+            arm = UrdfArm.from_text(header["urdf"], header["tip"], header["name"])
+            placement = Placement(arrays["T_sensor_base"], arrays["T_flange_marker"])
+            return PlacedArm(arm, placement, arrays["low"], arrays["high"], resolution)
+        case other:
+            raise FileFormatError(f"it holds an unknown model, {other!r}")
+
+
+def _plant(parts: dict[str, Any]) -> PlanarPlant:
+    """The plant of `dataclasses.asdict`."""
+    encoders = {axis: AxisEncoder(**parts[axis]) for axis in ("alpha", "beta", "gamma")}
+    return PlanarPlant(
+        arm=TwoLinkArm(**parts["arm"]),
+        v_x=float(parts["v_x"]),
+        v_y=float(parts["v_y"]),
+        head=StereoHead(**parts["head"]),
+        **encoders,
+    )
