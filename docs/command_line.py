@@ -13,7 +13,8 @@ def on_page_markdown(markdown: str, *, page: Any, **_: Any) -> str:
     if page.file.src_uri != "reference/cli.md":
         return markdown
     command = typer.main.get_command(app)
-    with typer.Context(command, info_name="handeye") as context:
+    context: Any = typer.Context(command, info_name="handeye")
+    with context:
         written = get_docs_for_click(obj=command, ctx=context, name="handeye", indent=1)
     # Rich markup is for terminals.
     for mark in ("[bold]", "[/]"):

@@ -33,6 +33,9 @@ def _kernel_cache() -> Path:
     return REPOSITORY / ".cache" / "numba" / (digest.hexdigest()[:16] + checked)
 
 
+# Read by scipy when it is first imported: scikit-learn's check of array types skips without it.
+os.environ["SCIPY_ARRAY_API"] = "1"
+
 # Read by numba when it is first imported, here and in the processes that tests start.
 os.environ["NUMBA_CACHE_DIR"] = str(_kernel_cache())
 

@@ -1,7 +1,8 @@
 """Shapes and finiteness, checked once at every public boundary."""
 
 from collections.abc import Sequence
-from typing import Any
+from operator import index
+from typing import Any, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -58,8 +59,12 @@ def scalar(
     return number
 
 
-def count(value: object, name: str, *, least: int = 1) -> int:
-    """`value` as an int of at least `least`, or InvalidInput."""
-    if isinstance(value, int | np.integer) and not isinstance(value, bool) and value >= least:
-        return int(value)
-    raise InvalidInput(f"{name} must be a whole number of at least {least}, got {value!r}")
+def count(value: SupportsIndex, name: str, *, least: int = 1) -> int:
+    """`value` as an int of at least `least`, or InvalidInput; a truth value is no count."""
+    try:
+        number = index(value)
+    except TypeError:
+        number = None
+    if number is None or isinstance(value, bool | np.bool_) or number < least:
+        raise InvalidInput(f"{name} must be a whole number of at least {least}, got {value!r}")
+    return number
