@@ -189,7 +189,7 @@ def main(
     turn: Annotated[float, typer.Option(help="Seconds for one thing in one turn.")] = 0.1,
 ) -> None:
     """Compare learners on one stream, at 200 to 13,000 neurons."""
-    console = Console()
+    console = Console(width=max(110, Console().width))  # the table is that wide
     rows: list[dict[str, Any]] = []
     with Progress(console=console) as progress:
         task = progress.add_task("", total=len(SIZES) * (repeats + 3))

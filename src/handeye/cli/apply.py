@@ -1,0 +1,49 @@
+"""`handeye apply`: targets in, corrected joint commands out."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.markup import escape
+
+from handeye.calibration.placed_arm import PlacedArm
+from handeye.calibration.storage import load_model
+from handeye.cli.console import err
+from handeye.io.targets import (
+    commands_as_csv,
+    read_point_targets,
+    read_stereo_targets,
+    write_commands,
+)
+
+
+def apply(
+    model: Annotated[
+        Path,
+        typer.Argument(help="Calibrated model that `handeye calibrate` saved.", show_default=False),
+    ],
+    targets: Annotated[
+        Path, typer.Argument(help="Table of targets, .csv or .parquet.", show_default=False)
+    ],
+    target_file: Annotated[
+        Path | None, typer.Option("--out", help="CSV file for the commands; else they are printed.")
+    ] = None,
+) -> None:
+    """Turn targets, as the eye sees them, into joint commands that bring the hand there.
+
+    The columns of a table of targets are described in docs/how-to/log-format.md.
+    """
+    stored = load_model(model)
+    calibrator: Any = stored.calibrator
+    if isinstance(calibrator.model, PlacedArm):
+        names = calibrator.model.arm.joint_names
+        wanted = read_point_targets(targets, names)
+    else:
+        names = calibrator.model.nominal.arm.joint_names
+        wanted = read_stereo_targets(targets)
+    commands = calibrator.command(wanted)
+    if target_file is None:
+        typer.echo(commands_as_csv(names, commands), nl=False)
+        return
+    write_commands(target_file, names, commands)
+    err().print(f"{len(commands)} commands -> {escape(str(target_file))}", highlight=False)

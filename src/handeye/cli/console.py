@@ -1,0 +1,78 @@
+"""What every command prints with: one console for results, one for everything else."""
+
+import json
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+from typer import Exit
+from typer.core import TyperGroup
+
+from handeye.errors import HandeyeError
+from handeye.io.files import replace_file
+
+MISUSE = 2
+"""Exit code when the input cannot be used."""
+
+
+def out() -> Console:
+    """Results: standard output as it is at this moment."""
+    return Console()
+
+
+def err() -> Console:
+    """Progress, notes and errors: standard error."""
+    return Console(stderr=True)
+
+
+class ErrorsForPeople(TyperGroup):
+    """Commands whose deliberate errors end in a message, not a traceback."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command; a HandeyeError or a file error is printed and ends it with code 2."""
+        try:
+            return super().invoke(ctx)
+        except HandeyeError as error:
+            message = str(error)
+        except OSError as error:
+            if error.filename is None:
+                raise
+            message = f"{error.filename}: cannot be read or written ({error.strerror})"
+        err().print(f"[bold red]error[/] {escape(message)}", soft_wrap=True, highlight=False)
+        raise Exit(MISUSE)
+
+
+@contextmanager
+def progress_bar(description: str, total: int) -> Generator[tuple[Progress, Any]]:
+    """A bar on standard error that leaves nothing behind."""
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=err(), transient=True) as progress:
+        yield progress, progress.add_task(description, total=total)
+
+
+def table(title: str, *columns: str, left: int = 1) -> Table:
+    """An empty table: the first `left` columns are text, the others numbers."""
+    made = Table(title=title, title_justify="left", title_style="bold", header_style="dim")
+    for i, column in enumerate(columns):
+        made.add_column(column, justify="left" if i < left else "right", no_wrap=i >= left)
+    return made
+
+
+def write_json(data: Any, where: str) -> None:
+    """JSON to a file, or to standard output for "-"."""
+    text = json.dumps(data, indent=2)
+    if where == "-":
+        print(text)  # noqa: T201 (the result itself, which rich would wrap and colour)
+        return
+    replace_file(where, (text + "\n").encode())
+    err().print(f"wrote {escape(str(Path(where)))}")

@@ -1,0 +1,1 @@
+"""What the thesis states, and the experiments that check it: only here are its numbers known."""

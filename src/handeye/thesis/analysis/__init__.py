@@ -1,0 +1,1 @@
+"""Estimates from curves: pure functions on arrays that know nothing of robots or records."""

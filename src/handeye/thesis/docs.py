@@ -1,0 +1,118 @@
+"""The reproduction as a page of the documentation: Markdown, with a few small figures."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+from handeye.io.files import replace_file
+from handeye.reports.style import color
+from handeye.reports.svg import inline_svg
+from handeye.thesis.comparison import comparison_markdown
+from handeye.thesis.figures import FIGURES, Drawn, NotDrawn, drawable
+from handeye.thesis.judge import Row
+from handeye.thesis.manifest import Manifest
+from handeye.thesis.page import claim_cells, headline
+from handeye.thesis.storage import Stored
+from handeye.thesis.wording import sentence
+
+SHOWN = ("3.10", "3.15", "3.21", "3.22", "3.31", "3.34", "3.37", "3.38", "3.40", "3.45", "3.51")
+"""Figures that the page shows; all others are on the page that the command writes."""
+
+_PICTURES = "reproduction"
+_AGAIN = """\
+```sh
+handeye reproduce
+```
+
+makes all of it again, with every figure of chapter 3, and writes one page,
+`out/reproduction/index.html`. `handeye reproduce 3.22` makes one figure and judges the claims that
+it shows.
+"""
+
+
+def write_docs(folder: str | os.PathLike[str], rows: Sequence[Row], stored: Stored) -> Path:
+    """Write `reproduction.md` and its pictures into a folder, and return the page's path."""
+    place, pictures = Path(folder), Path(folder) / _PICTURES
+    shown = [figure for figure in drawable(stored.manifest.experiments) if figure.number in SHOWN]
+    for figure in shown:
+        drawn = inline_svg(figure.draw(stored.records), "figure", figure.title)
+        replace_file(pictures / f"figure-{figure.number}.svg", _standing_alone(drawn).encode())
+    page = place / "reproduction.md"
+    replace_file(page, _markdown(rows, stored, shown).encode())
+    return page
+
+
+def _markdown(rows: Sequence[Row], stored: Stored, shown: Sequence[Drawn]) -> str:
+    parts = [
+        "# Reproduction\n",
+        "<!-- Written by `handeye reproduce`; do not edit. -->\n",
+        f"**{headline(rows)}** (chapter 3). {_how(stored.manifest)}\n",
+        _AGAIN,
+        "## Claims\n",
+        _claims(rows),
+        "## Not reproduced: what was found and tried\n",
+        _failed(rows),
+    ]
+    if "comparison" in stored.manifest.experiments:
+        parts += ["## Network or estimator?\n", comparison_markdown(stored.records)]
+    parts.append("## Figures\n")
+    parts += [_picture(figure) for figure in shown]
+    return "\n".join([*parts, "## All figures\n", _all_figures()])
+
+
+def _how(manifest: Manifest) -> str:
+    most = max((ran.replicates for ran in manifest.experiments.values()), default=1)
+    trial = "" if manifest.effort == 1.0 else " This was a trial run: its verdicts mean nothing."
+    versions = ", ".join(f"{name} {number}" for name, number in manifest.versions.items())
+    return (
+        f"{most} replicates with other random numbers; ± is the 95 % interval of their mean. An "
+        f"ordering or shape is checked in each replicate. {sentence(versions)}.{trial}"
+    )
+
+
+def _claims(rows: Sequence[Row]) -> str:
+    lines = [("Claim", "Thesis", "Stated", "Measured", "Verdict"), ("---",) * 5]
+    lines += [(*claim_cells(row), _verdict(row)) for row in rows]
+    return _table(lines)
+
+
+def _table(lines: Sequence[Sequence[str]]) -> str:
+    cells = [[cell.replace("|", "\\|") for cell in line] for line in lines]
+    return "\n".join(f"| {' | '.join(line)} |" for line in cells) + "\n"
+
+
+def _verdict(row: Row) -> str:
+    return row.verdict if row.verdict == "reproduced" else f"**{row.verdict}**"
+
+
+def _failed(rows: Sequence[Row]) -> str:
+    lines = [
+        f"- `{row.id}`: {claim_cells(row)[0]}. {row.note}"
+        for row in rows
+        if row.verdict != "reproduced"
+    ]
+    return "\n".join(lines or ["None."]) + "\n"
+
+
+def _picture(figure: Drawn) -> str:
+    picture = f"{_PICTURES}/figure-{figure.number}.svg"
+    return (
+        f"![{figure.title}]({picture})\n\n*Figure {figure.number}. {figure.title}. "
+        f"{figure.caption}*\n"
+    )
+
+
+def _all_figures() -> str:
+    reasons = {
+        f.number: f"not drawn: {f.reason}" for f in FIGURES.values() if isinstance(f, NotDrawn)
+    }
+    lines = [("Figure", "What it shows", ""), ("---",) * 3]
+    lines += [(f.number, f.title, reasons.get(f.number, "")) for f in FIGURES.values()]
+    return _table(lines)
+
+
+def _standing_alone(svg: str) -> str:
+    """An inline drawing as a file: with its namespace, on light ground."""
+    return svg.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1).replace(
+        'style="max-width', f'style="background: {color("card")}; max-width', 1
+    )

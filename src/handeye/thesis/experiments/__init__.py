@@ -1,0 +1,50 @@
+"""Every experiment of this version: one short file each, listed here."""
+
+from typing import Any
+
+from handeye.thesis.experiment import Experiment
+from handeye.thesis.experiments.adaptation import ADAPTATION
+from handeye.thesis.experiments.allocation import ALLOCATION
+from handeye.thesis.experiments.comparison import COMPARISON
+from handeye.thesis.experiments.distortions import DISTORTIONS
+from handeye.thesis.experiments.estimation import ESTIMATION
+from handeye.thesis.experiments.exact import EXACT
+from handeye.thesis.experiments.excluded_region import EXCLUDED_REGION
+from handeye.thesis.experiments.fixed_point import FIXED_POINT
+from handeye.thesis.experiments.grids import GRIDS
+from handeye.thesis.experiments.noise_example import NOISE_EXAMPLE
+from handeye.thesis.experiments.noise_floor import NOISE_FLOOR
+from handeye.thesis.experiments.periodic import PERIODIC
+from handeye.thesis.experiments.perturbations import PERTURBATIONS
+from handeye.thesis.experiments.preferred import PREFERRED
+from handeye.thesis.experiments.responses import RESPONSES
+from handeye.thesis.experiments.scenarios import SCENARIOS
+from handeye.thesis.experiments.step import STEP
+from handeye.thesis.experiments.step_extremes import STEP_EXTREMES
+from handeye.thesis.experiments.uncorrected import UNCORRECTED
+from handeye.thesis.experiments.width import WIDTH
+
+_ALL: tuple[Experiment[Any], ...] = (
+    UNCORRECTED,
+    PERTURBATIONS,
+    DISTORTIONS,
+    EXCLUDED_REGION,
+    NOISE_FLOOR,
+    NOISE_EXAMPLE,
+    EXACT,
+    PREFERRED,
+    ALLOCATION,
+    GRIDS,
+    ADAPTATION,
+    WIDTH,
+    RESPONSES,
+    FIXED_POINT,
+    STEP,
+    PERIODIC,
+    STEP_EXTREMES,
+    SCENARIOS,
+    ESTIMATION,
+    COMPARISON,
+)
+
+EXPERIMENTS = {experiment.id: experiment for experiment in _ALL}

@@ -1,0 +1,48 @@
+"""Figures that show how something is built, and no result."""
+
+from handeye.thesis.figures.figure import NotDrawn
+
+_LAYOUT = "a drawing of the robot; its geometry is `handeye.calibration.plant`"
+_BLOCKS = "a block diagram; the blocks are the calls of `handeye.calibration.calibrators`"
+
+DRAWINGS = [
+    NotDrawn("3.1", "Layout of arm, eye and base", _LAYOUT),
+    NotDrawn(
+        "3.2",
+        "Processing of stereo images, with its errors",
+        "a block diagram; its equations are `StereoHead.measure`",
+    ),
+    NotDrawn(
+        "3.3",
+        "Geometry of the two cameras",
+        "a drawing; the noise that follows from it is `StereoHead.range_std` and "
+        "`eccentricity_std`",
+    ),
+    NotDrawn("3.4", "Calibration as a program, and in the background", _BLOCKS),
+    NotDrawn("3.5", "Adaptation with a network", _BLOCKS),
+    NotDrawn(
+        "3.6",
+        "Pointing of the eye, with its errors",
+        "a block diagram; its equations are `PlanarPlant.sight`",
+    ),
+    NotDrawn(
+        "3.7",
+        "Positioning of the arm, with its errors",
+        "a block diagram; its equations are `PlanarPlant.tips`",
+    ),
+    NotDrawn(
+        "3.17",
+        "How a virtual neuron shares out a correction",
+        "a sketch of the rule; the rule is `handeye.networks.VirtualNeuron`",
+    ),
+    NotDrawn(
+        "3.19",
+        "How CMAC shares out a correction",
+        "a sketch of the rule; the rule is `handeye.networks.CMAC`",
+    ),
+    NotDrawn(
+        "3.50",
+        "Adaptation with nonlinear estimation",
+        "a block diagram; the estimator is `handeye.calibration.estimation`",
+    ),
+]

@@ -1,0 +1,66 @@
+"""Every figure of chapter 3, and how it is found."""
+
+from collections.abc import Iterable
+
+from handeye.errors import InvalidInput
+from handeye.thesis.figures.adaptation import ADAPTATION
+from handeye.thesis.figures.allocation import ALLOCATION
+from handeye.thesis.figures.drawings import DRAWINGS
+from handeye.thesis.figures.estimation import ESTIMATION
+from handeye.thesis.figures.figure import Drawn, NotDrawn
+from handeye.thesis.figures.frequency import FREQUENCY
+from handeye.thesis.figures.noise import NOISE
+from handeye.thesis.figures.plant import PLANT
+from handeye.thesis.figures.scenarios import SCENARIOS
+from handeye.thesis.figures.tracking import TRACKING
+from handeye.thesis.figures.width import WIDTH
+
+TOPICS: dict[str, list[Drawn]] = {
+    "The plant": PLANT,
+    "When and where neurons are added": ALLOCATION,
+    "How neurons are adjusted": ADAPTATION,
+    "Noise": NOISE,
+    "How wide neurons are": WIDTH,
+    "A plant that changes": [*TRACKING, *FREQUENCY],
+    "Sources of error": SCENARIOS,
+    "Nonlinear estimation": ESTIMATION,
+}
+"""The figures that are drawn, by topic."""
+
+
+def _place(figure: Drawn | NotDrawn) -> int:
+    return int(figure.number.partition(".")[2])
+
+
+FIGURES: dict[str, Drawn | NotDrawn] = {
+    figure.number: figure
+    for figure in sorted(
+        (*DRAWINGS, *(figure for topic in TOPICS.values() for figure in topic)), key=_place
+    )
+}
+"""Every figure of chapter 3 by its number, in order."""
+
+
+def find_figure(number: str) -> Drawn:
+    """The figure of a number.
+
+    Raises:
+        InvalidInput: there is none, or it shows no result.
+    """
+    figure = FIGURES.get(number)
+    if figure is None:
+        first, *_, last = FIGURES
+        raise InvalidInput(f"there is no figure {number}: figures go from {first} to {last}")
+    if isinstance(figure, NotDrawn):
+        raise InvalidInput(f"figure {number} shows no result: {figure.reason}")
+    return figure
+
+
+def drawable(experiments: Iterable[str]) -> list[Drawn]:
+    """The figures that records of these experiments suffice for, in order."""
+    there = set(experiments)
+    return [
+        figure
+        for figure in FIGURES.values()
+        if isinstance(figure, Drawn) and there.issuperset(figure.experiments)
+    ]

@@ -1,0 +1,153 @@
+"""Verdicts: what was measured against what was stated."""
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Literal
+
+import numpy as np
+from scipy.special import ndtri, stdtrit
+
+from handeye.arrays import Array
+from handeye.errors import InvalidInput
+from handeye.thesis.claims import Claim
+from handeye.thesis.records import Records
+from handeye.thesis.shapes import SHAPES
+from handeye.thesis.units import scale_for, show
+
+Verdict = Literal["reproduced", "not reproduced", "not testable"]
+Interval = tuple[float, float]
+
+CONFIDENCE = 0.95
+SHARE = "fraction of replicates"
+_ROUNDING = 1e-12
+
+
+@dataclass(frozen=True)
+class Row:
+    """The outcome for one claim.
+
+    stated          the thesis's figure in `unit`, or None for an ordering or shape
+    measured        mean over replicates; for an ordering or shape the share of them where it holds
+    low, high       95 % interval of measured, or None with a single random replicate
+    note            what a reader must know to judge the verdict
+    """
+
+    id: str
+    stated: float | None
+    unit: str
+    measured: float | None
+    low: float | None
+    high: float | None
+    replicates: int
+    verdict: Verdict
+    note: str
+
+    def to_json(self) -> dict[str, str | int | float | None]:
+        """The fields under their names."""
+        return asdict(self)
+
+
+def judge(claim: Claim, records: Records, *, deterministic: bool = False) -> Row:
+    """The row of a claim that has a measure, from the records of its experiments.
+
+    deterministic: nothing in them is random, so that the interval has no width.
+
+    Raises:
+        InvalidInput: a claim without a measure, or records that lack what it needs.
+    """
+    if claim.measure is None:
+        raise InvalidInput(f"no experiment measures {claim.id} yet")
+    if claim.value is None:
+        return _judge_shape(claim, records, deterministic)
+    values = records.values(claim.measure)
+    notes = [claim.note, _others(claim, records)]
+    if not np.all(np.isfinite(values)):
+        lost = int(np.sum(~np.isfinite(values)))
+        notes.append(f"Not finite in {lost} of {len(values)} replicates.")
+        return _row(claim, None, None, len(values), "not testable", notes)
+    mean = float(values.mean())
+    interval = (mean, mean) if deterministic else t_interval(values)
+    if interval is None:
+        notes.append("One replicate: no interval.")
+    verdict = "reproduced" if agrees(claim, mean) else "not reproduced"
+    return _row(claim, mean, interval, len(values), verdict, notes)
+
+
+def agrees(claim: Claim, measured: float) -> bool:
+    """Whether a measured figure keeps the claim's rule; the limit itself does, rounding aside."""
+    if claim.value is None or claim.tol is None:
+        raise InvalidInput(f"{claim.id} states no figure with a tolerance")
+    slack = claim.tol * abs(claim.value)
+    edge = _ROUNDING * max(abs(claim.value), slack)
+    excess = measured - claim.value
+    match claim.rule:
+        case "within":
+            return abs(excess) <= slack + edge
+        case "at_most":
+            return excess <= slack + edge
+        case "at_least":
+            return -excess <= slack + edge
+        case _:
+            raise InvalidInput(f"{claim.id} is judged by a predicate, not by its value")
+
+
+def t_interval(values: Array) -> Interval | None:
+    """Student's 95 % interval of the mean of values (N,), None for fewer than two."""
+    n = len(values)
+    if n < 2:
+        return None
+    mean = float(values.mean())
+    half = float(stdtrit(n - 1, 0.5 + CONFIDENCE / 2.0) * values.std(ddof=1) / math.sqrt(n))
+    return mean - half, mean + half
+
+
+def wilson_interval(successes: int, n: int) -> Interval:
+    """Wilson's 95 % interval of a probability after `successes` in n >= 1 tries."""
+    z2 = float(ndtri(0.5 + CONFIDENCE / 2.0)) ** 2
+    middle = (successes + z2 / 2.0) / (n + z2)
+    half = math.sqrt(z2 * (successes * (n - successes) / n + z2 / 4.0)) / (n + z2)
+    # Rounding must not take a share of 0 or 1 out of its own interval.
+    share = successes / n
+    return min(max(middle - half, 0.0), share), max(min(middle + half, 1.0), share)
+
+
+def _judge_shape(claim: Claim, records: Records, deterministic: bool) -> Row:
+    finding = SHAPES[claim.id](records, claim.limits)
+    n, held = len(finding.held), sum(finding.held)
+    share = held / n
+    notes = [finding.note, claim.note]
+    if deterministic:
+        interval = (share, share)
+    elif n < 2:
+        interval = None
+        notes.append("One replicate: no interval.")
+    else:
+        interval = wilson_interval(held, n)
+    verdict = "reproduced" if finding.holds else "not reproduced"
+    return _row(claim, share, interval, n, verdict, notes)
+
+
+def _row(
+    claim: Claim,
+    measured: float | None,
+    interval: Interval | None,
+    replicates: int,
+    verdict: Verdict,
+    notes: list[str],
+) -> Row:
+    low, high = interval or (None, None)
+    unit = SHARE if claim.unit is None else claim.unit
+    note = " ".join(part for part in notes if part)
+    return Row(claim.id, claim.value, unit, measured, low, high, replicates, verdict, note)
+
+
+def _others(claim: Claim, records: Records) -> str:
+    """A sentence that quotes the other quantities of a claim, in its scale where units agree."""
+    own = scale_for(claim.value or 0.0, claim.unit or "")
+    quoted = [
+        f"{other.what}: {show(float(records.values(other.measure).mean()), other.unit, scale)}"
+        for other in claim.also
+        for scale in [own if other.unit == claim.unit else None]
+    ]
+    text = "; ".join(quoted)
+    return f"{text[0].upper()}{text[1:]}." if text else ""
