@@ -11,28 +11,28 @@ from handeye.errors import InvalidInput
 from handeye.networks import ResourceAllocatingNetwork
 from handeye.observations import Observation, Target
 
-O = TypeVar("O", bound=Observation)  # noqa: E741 (the thesis's letter for neither: O observation)
-T = TypeVar("T", bound=Target)
+Seen = TypeVar("Seen", bound=Observation)
+Wanted = TypeVar("Wanted", bound=Target)
 
 
-class Nominal(Generic[O, T]):
+class Nominal(Generic[Seen, Wanted]):
     """Trusts the model and learns nothing: what every calibrator is compared with."""
 
-    def __init__(self, model: HandEyeModel[O, T]) -> None:
+    def __init__(self, model: HandEyeModel[Seen, Wanted]) -> None:
         self.model = model
 
-    def observe(self, observation: O) -> Feedback:
+    def observe(self, observation: Seen) -> Feedback:
         """Report the error of the nominal model for one observation."""
         feedback = self.observe_many(_batch(observation))
         return Feedback(feedback.error[0], feedback.allocated[0])
 
-    def observe_many(self, observations: O) -> Feedback:
+    def observe_many(self, observations: Seen) -> Feedback:
         """The same for N observations."""
         needed = self.model.needed(observations)
         error = self.model.displacement(observations, needed)
         return Feedback(error, np.zeros(len(observations), np.bool_))
 
-    def command(self, target: T) -> Array:
+    def command(self, target: Wanted) -> Array:
         """Nominal joint commands for one target or N."""
         return _command(self.model, target, self._nothing)
 
@@ -44,7 +44,7 @@ class Nominal(Generic[O, T]):
         return np.zeros((len(inputs), self.model.n_outputs))
 
 
-class NetworkCorrection(Generic[O, T]):
+class NetworkCorrection(Generic[Seen, Wanted]):
     """Adds a correction, learned by a resource-allocating network, to the model (section 3.5).
 
     Each observation gives the correction that would have been right, `needed = measured - nominal`;
@@ -60,7 +60,7 @@ class NetworkCorrection(Generic[O, T]):
     """
 
     def __init__(
-        self, model: HandEyeModel[O, T], network: ResourceAllocatingNetwork | None = None
+        self, model: HandEyeModel[Seen, Wanted], network: ResourceAllocatingNetwork | None = None
     ) -> None:
         space = model.space
         self.model = model
@@ -78,19 +78,19 @@ class NetworkCorrection(Generic[O, T]):
                 f"{model.n_outputs} outputs, got {have[0]} and {have[1]}"
             )
 
-    def observe(self, observation: O) -> Feedback:
+    def observe(self, observation: Seen) -> Feedback:
         """Learn from one observation; report the error made before learning."""
         feedback = self.observe_many(_batch(observation))
         return Feedback(feedback.error[0], feedback.allocated[0])
 
-    def observe_many(self, observations: O) -> Feedback:
+    def observe_many(self, observations: Seen) -> Feedback:
         """Learn from N observations in order: the same result as one by one."""
         learned = self.network.learn_many(
             self.model.features(observations), self.model.needed(observations)
         )
         return Feedback(self.model.displacement(observations, learned.error), learned.allocated)
 
-    def command(self, target: T) -> Array:
+    def command(self, target: Wanted) -> Array:
         """Corrected joint commands for one target or N."""
         return _command(self.model, target, self.network.predict_many)
 

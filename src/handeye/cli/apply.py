@@ -9,6 +9,7 @@ from rich.markup import escape
 from handeye.calibration.placed_arm import PlacedArm
 from handeye.calibration.storage import load_model
 from handeye.cli.console import err
+from handeye.errors import InvalidInput
 from handeye.io.targets import (
     commands_as_csv,
     read_point_targets,
@@ -41,7 +42,10 @@ def apply(
     else:
         names = calibrator.model.nominal.arm.joint_names
         wanted = read_stereo_targets(targets)
-    commands = calibrator.command(wanted)
+    try:
+        commands = calibrator.command(wanted)
+    except InvalidInput as error:
+        raise InvalidInput(f"{targets}: {error}") from error
     if target_file is None:
         typer.echo(commands_as_csv(names, commands), nl=False)
         return

@@ -6,24 +6,32 @@ from handeye.arrays import Array
 
 
 class Arm(Protocol):
-    """Forward kinematics of a serial arm with n joints.
-
-    name         for messages and reports
-    joint_names  in the order of every joint array, base first
-    lower, upper joint limits (n,) [rad] (of a sliding joint [m]); infinite where there is none
-    reach        upper bound of the distance from the base's origin to the flange's [m]
-    """
+    """Forward kinematics of a serial arm with n joints."""
 
     @property
-    def name(self) -> str: ...  # noqa: D102
+    def name(self) -> str:
+        """For messages and reports."""
+        ...
+
     @property
-    def joint_names(self) -> tuple[str, ...]: ...  # noqa: D102
+    def joint_names(self) -> tuple[str, ...]:
+        """In the order of every joint array, base first."""
+        ...
+
     @property
-    def lower(self) -> Array: ...  # noqa: D102
+    def lower(self) -> Array:
+        """Lower joint limits (n,) [rad] or [m], -inf where there is none."""
+        ...
+
     @property
-    def upper(self) -> Array: ...  # noqa: D102
+    def upper(self) -> Array:
+        """Upper joint limits (n,) [rad] or [m], inf where there is none."""
+        ...
+
     @property
-    def reach(self) -> float: ...  # noqa: D102
+    def reach(self) -> float:
+        """Upper bound of the distance from the base's origin to the flange's [m]."""
+        ...
 
     def poses(self, joints: Array) -> Array:
         """T_base_flange (N, 4, 4) at joints (N, n)."""

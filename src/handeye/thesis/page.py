@@ -47,8 +47,9 @@ def reproduction_page(
         title=TITLE,
         headline=headline(rows),
         subtitle="Every claim is measured again in simulation, over replicates with other random "
-        "numbers, and judged by a rule that was fixed beforehand. Verdicts and figures are "
-        "computed from stored records. Diamonds, and lines that say so, are what it states.",
+        "numbers, and judged by the rule and tolerance stored with it. Where the text says "
+        '"about", the limit is ours, set after a look at two or three replicates unless a note '
+        "says otherwise. Diamonds, and lines that say so, are what the thesis states.",
         sections=[section for section in sections if section is not None],
         settings=_settings(records, manifest),
         date=date,
