@@ -55,7 +55,7 @@ def test_no_calibrator_and_no_model_is_left_out():
             and all(hasattr(cls, method) for method in methods)
         }
 
-    assert offering(calibrators, "observe", "observe_many", "command") == set(KINDS)
+    assert offering(calibrators, "observe", "observe_many", "errors", "command") == set(KINDS)
     known = offering(models, "needed", "features") | offering(placed_arm, "needed", "features")
     assert known == {type(case.model) for case in CASES}
 
@@ -78,8 +78,6 @@ def test_many_at_once_is_one_by_one_in_any_parts(kind, case):
     whole, single, parts = (kind(case.model) for _ in range(3))
     errors, allocated = whole.observe_many(case.seen)
     one_by_one = [single.observe(one) for one in case.seen]
-    # Bit by bit, except that the frames of an arm in space are chained by a matrix product, which
-    # rounds otherwise for one row than for many.
     assert_same([errors], [np.stack([f.error for f in one_by_one])])
     np.testing.assert_array_equal(allocated, [f.allocated for f in one_by_one])
     for part in (slice(0, 7), slice(7, 8), slice(8, 8), slice(8, 60)):
@@ -88,6 +86,18 @@ def test_many_at_once_is_one_by_one_in_any_parts(kind, case):
         np.testing.assert_array_equal(feedback.allocated, allocated[part])
     assert_same(state(whole), state(single))
     assert_same(state(whole), state(parts))
+
+
+@EVERY_CASE
+@EVERY_KIND
+def test_errors_are_what_observing_would_report_and_teach_nothing(kind, case):
+    calibrator, rest = kind(case.model), case.seen[40:]
+    calibrator.observe_many(case.seen[:40])
+    before = state(calibrator)
+    errors = calibrator.errors(rest)
+    np.testing.assert_allclose(errors, miss(calibrator, rest), atol=1e-12)
+    assert_same(state(calibrator), before)
+    np.testing.assert_array_equal(errors[0], calibrator.observe(rest[0]).error)
 
 
 @EVERY_CASE

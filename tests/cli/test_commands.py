@@ -94,7 +94,7 @@ def test_json_has_every_number_and_nothing_else_is_printed(log: Path, tmp_path: 
 def test_learning_helps_and_nominal_does_not_learn(tmp_path: Path):
     path = tmp_path / "clean.csv"
     done("simulate", path, "--rows", 1500, "--no-noise")
-    for method, better in (("network", True), ("nominal", False)):
+    for method, better in (("network", True), ("estimator", True), ("nominal", False)):
         out = ("--out", tmp_path, "--json", "-")
         data = json.loads(
             done("calibrate", path, "--robot", "planar", "--method", method, *out).stdout
@@ -144,6 +144,8 @@ def test_the_ur10_log_end_to_end(shared_data: Path, tmp_path: Path):
     assert errors["held_out_before"]["mean"] == pytest.approx(1.04e-3, abs=0.05e-3)
     assert errors["held_out_after"]["mean"] < 0.6e-3
     assert errors["online"]["mean"] < 0.45e-3
+    estimator = ("--robot", "ur10", "--method", "estimator", "--out", tmp_path)
+    assert "planar robot" in refused("calibrate", tmp_path / "ur10.csv", *estimator)
 
     rows = rows_of(tmp_path / "ur10.csv")
     targets = write(tmp_path / "targets.csv", [rows[0], *rows[2:12]])

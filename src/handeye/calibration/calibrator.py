@@ -32,6 +32,10 @@ class Calibrator(Protocol[O_contra, T_contra]):
         """Learn from N observations in order: the same result as one by one, but faster."""
         ...
 
+    def errors(self, observations: O_contra) -> Array:
+        """The errors (N, k) [m] that it would make on N observations as it is, learning nothing."""
+        ...
+
     def command(self, target: T_contra) -> Array:
         """Joint commands (encoder readings) that bring the hand to one target or to each of N."""
         ...

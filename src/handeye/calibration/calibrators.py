@@ -28,9 +28,11 @@ class Nominal(Generic[Seen, Wanted]):
 
     def observe_many(self, observations: Seen) -> Feedback:
         """The same for N observations."""
-        needed = self.model.needed(observations)
-        error = self.model.displacement(observations, needed)
-        return Feedback(error, np.zeros(len(observations), np.bool_))
+        return Feedback(self.errors(observations), np.zeros(len(observations), np.bool_))
+
+    def errors(self, observations: Seen) -> Array:
+        """Errors (N, k) [m] of the nominal model on N observations."""
+        return self.model.displacement(observations, self.model.needed(observations))
 
     def command(self, target: Wanted) -> Array:
         """Nominal joint commands for one target or N."""
@@ -89,6 +91,11 @@ class NetworkCorrection(Generic[Seen, Wanted]):
             self.model.features(observations), self.model.needed(observations)
         )
         return Feedback(self.model.displacement(observations, learned.error), learned.allocated)
+
+    def errors(self, observations: Seen) -> Array:
+        """Errors (N, k) [m] on N observations with the network as it is."""
+        given = self.network.predict_many(self.model.features(observations))
+        return self.model.displacement(observations, self.model.needed(observations) - given)
 
     def command(self, target: Wanted) -> Array:
         """Corrected joint commands for one target or N."""

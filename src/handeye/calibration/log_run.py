@@ -6,6 +6,7 @@ import numpy as np
 
 from handeye.arrays import Array
 from handeye.calibration.calibrators import NetworkCorrection, Nominal
+from handeye.calibration.estimation import ParameterEstimator
 from handeye.calibration.models import AnyModel, PlanarModel
 from handeye.calibration.placed_arm import PlacedArm
 from handeye.calibration.placement import estimate_placement
@@ -20,7 +21,7 @@ from handeye.randomness import stream
 from handeye.robots.arm import Arm
 
 Robot = PlanarPlant | Arm
-Method = Literal["network", "nominal"]
+Method = Literal["network", "estimator", "nominal"]
 
 _FEWEST_ROWS = 9
 _STDS = 3.0
@@ -57,7 +58,7 @@ def calibrate_log(
     seen = log.observations
     model, frames = place(robot, seen)
     calibrator = calibrator_for(model, method)
-    before = calibrator_for(model, "nominal").observe_many(seen).error
+    before = calibrator_for(model, "nominal").errors(seen)
     online = learn_from_log(calibrator, seen, after_each=after_each)
     result = CalibrationResult(
         robot=robot_name(robot),
@@ -87,8 +88,22 @@ def robot_name(robot: Robot) -> str:
 
 
 def calibrator_for(model: AnyModel, method: Method) -> AnyCalibrator:
-    """A calibrator that has seen nothing."""
-    return NetworkCorrection(model) if method == "network" else Nominal(model)
+    """A calibrator that has seen nothing.
+
+    Raises:
+        LogError: the estimator for a robot other than the planar one.
+    """
+    match method:
+        case "nominal":
+            return Nominal(model)
+        case "network":
+            return NetworkCorrection(model)
+        case "estimator":
+            if not isinstance(model, PlanarModel):
+                raise LogError(
+                    "the parameter estimator knows only the planar robot: choose the method network"
+                )
+            return ParameterEstimator(model)
 
 
 def place(robot: Robot, seen: Observation) -> tuple[AnyModel, str]:
@@ -127,17 +142,8 @@ def _held_out(robot: Robot, log: Log, method: Method, replicate: int) -> HeldOut
     model, _ = place(robot, seen[train])
     calibrator = calibrator_for(model, method)
     learn_from_log(calibrator, seen[train])
-    return HeldOut(test, *_errors(model, calibrator, seen[test]))
-
-
-def _errors(model: AnyModel, calibrator: AnyCalibrator, seen: Observation) -> tuple[Array, Array]:
-    """Errors (N, k) [m] of model and calibrator, which learns nothing from them."""
-    needed = model.needed(seen)
-    before = model.displacement(seen, needed)
-    if not isinstance(calibrator, NetworkCorrection):
-        return before, before
-    given = calibrator.network.predict_many(model.features(seen))
-    return before, model.displacement(seen, needed - given)
+    before = calibrator_for(model, "nominal").errors(seen[test])
+    return HeldOut(test, before, calibrator.errors(seen[test]))
 
 
 def _positions(seen: Observation) -> Array:

@@ -21,6 +21,7 @@ class MethodName(StrEnum):
     """What learns."""
 
     network = "network"
+    estimator = "estimator"
     nominal = "nominal"
 
 
@@ -34,7 +35,11 @@ def calibrate(
         str | None, typer.Option(help="Link of the URDF that carries the marker.")
     ] = None,
     method: Annotated[
-        MethodName, typer.Option(help="What learns: a network correction, or nothing.")
+        MethodName,
+        typer.Option(
+            help="What learns: a network correction; an estimator of the kinematic parameters "
+            "(planar robot only); or nothing."
+        ),
     ] = MethodName.network,
     folder: Annotated[
         Path, typer.Option("--out", help="Folder for the model and the report page.")

@@ -42,6 +42,7 @@ from handeye.thesis.plants import NOMINAL, NORMAL
     [
         promises.test_observing_reports_the_error_made_before_learning,
         promises.test_many_at_once_is_one_by_one_in_any_parts,
+        promises.test_errors_are_what_observing_would_report_and_teach_nothing,
         promises.test_commands_are_pure_and_one_is_as_many,
     ],
 )

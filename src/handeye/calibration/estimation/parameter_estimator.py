@@ -91,6 +91,11 @@ class ParameterEstimator:
         error = self._errors(observations, rows, before)
         return Feedback(error, np.zeros(len(observations), np.bool_))
 
+    def errors(self, observations: StereoObservation) -> Array:
+        """Errors (N, 2) [m] on N observations with the parameters as they are."""
+        rows = sightings(self.model.nominal, self.method.assumptions, observations)
+        return self._errors(observations, rows, np.tile(self.parameters, (len(rows), 1)))
+
     def command(self, target: StereoTarget) -> Array:
         """Joint commands of the estimated plant for one target or N."""
         return self.plant.joints_for(target)
