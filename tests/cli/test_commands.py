@@ -238,6 +238,9 @@ def test_without_the_report_extra_the_calibration_stands(
     assert "pip install 'handeye[report]'" in result.stderr
     assert (tmp_path / "work.model.safetensors").exists()
     assert not (tmp_path / "work.html").exists()
+    result = done("demo", "--trials", 200, "--out", tmp_path)
+    assert "pip install 'handeye[report]'" in result.stderr
+    assert str(tmp_path / "demo.model.safetensors") in result.stdout
 
 
 def test_help_and_version():

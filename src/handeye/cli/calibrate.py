@@ -11,7 +11,7 @@ from handeye.calibration.log_checks import check_log
 from handeye.calibration.log_run import Calibration, arm_of, calibrate_log
 from handeye.calibration.results import CalibrationResult, ErrorSummary
 from handeye.calibration.storage import save_model
-from handeye.cli.console import err, out, progress_bar, table, write_json
+from handeye.cli.console import no_page, out, progress_bar, table, write_json
 from handeye.cli.robot import ROBOT_HELP, load_robot
 from handeye.errors import MissingExtra
 from handeye.io.logs import read_log
@@ -87,7 +87,7 @@ def _page(result: CalibrationResult, path: Path) -> Path | None:
     try:
         from handeye.reports.calibration import calibration_page  # noqa: PLC0415
     except MissingExtra as missing:
-        err().print(f"[yellow]no page[/] {escape(str(missing))}", highlight=False)
+        no_page(missing)
         return None
     calibration_page(result).write(path)
     return path

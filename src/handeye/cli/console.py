@@ -13,7 +13,7 @@ from rich.table import Table
 from typer import Exit
 from typer.core import TyperGroup
 
-from handeye.errors import HandeyeError
+from handeye.errors import HandeyeError, MissingExtra
 from handeye.io.files import replace_file
 
 MISUSE = 2
@@ -45,6 +45,11 @@ class ErrorsForPeople(TyperGroup):
             message = f"{error.filename}: cannot be read or written ({error.strerror})"
         err().print(f"[bold red]error[/] {escape(message)}", soft_wrap=True, highlight=False)
         raise Exit(MISUSE)
+
+
+def no_page(missing: MissingExtra) -> None:
+    """Say why there is no report page; everything else is done without it."""
+    err().print(f"[yellow]no page[/] {escape(str(missing))}", highlight=False, soft_wrap=True)
 
 
 @contextmanager

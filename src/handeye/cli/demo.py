@@ -22,7 +22,8 @@ from handeye.calibration.session import (
 )
 from handeye.calibration.storage import save_model
 from handeye.calibration.world import PlanarWorld
-from handeye.cli.console import out, progress_bar, table
+from handeye.cli.console import no_page, out, progress_bar, table
+from handeye.errors import MissingExtra
 from handeye.networks import ResourceAllocatingNetwork
 from handeye.observations import StereoObservation, StereoTarget
 from handeye.randomness import stream
@@ -79,11 +80,14 @@ def demo(
     _print(before, after, floor)
     path = folder / "demo.model.safetensors"
     save_model(path, learner, 2 * trials)
+    out().print(f"model  {escape(str(path))}", highlight=False, soft_wrap=True)
     page = folder / "demo.html"
-    _write_page(page, still, before, after, stages, floor, replicate)
-    console = out()
-    console.print(f"model  {escape(str(path))}", highlight=False, soft_wrap=True)
-    console.print(f"page   {escape(str(page))}", highlight=False, soft_wrap=True)
+    try:
+        _write_page(page, still, before, after, stages, floor, replicate)
+    except MissingExtra as missing:
+        no_page(missing)
+        return
+    out().print(f"page   {escape(str(page))}", highlight=False, soft_wrap=True)
 
 
 def _miss(world: PlanarWorld, calibrator: AnyCalibrator, trial: int) -> tuple[Array, Array]:

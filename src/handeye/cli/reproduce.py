@@ -11,7 +11,7 @@ from rich.markup import escape
 from rich.padding import Padding
 from rich.text import Text
 
-from handeye.cli.console import err, out, progress_bar, write_json
+from handeye.cli.console import err, no_page, out, progress_bar, write_json
 from handeye.errors import InvalidInput, MissingExtra
 from handeye.thesis.claims import Claim, load_claims
 from handeye.thesis.judge import Row
@@ -122,21 +122,18 @@ def _write_page(
     folder: Path, docs: Path | None, rows: Sequence[Row], stored: Stored, chosen: Selection
 ) -> None:
     """The page, and the documentation's if it is asked for; says where, or what is missing."""
+    err().print(f"records  {escape(str(folder))}", soft_wrap=True, highlight=False)
     try:
         from handeye.thesis.docs import write_docs  # noqa: PLC0415 (needs an extra)
         from handeye.thesis.page import reproduction_page  # noqa: PLC0415 (needs an extra)
     except MissingExtra as absent:
-        err().print(
-            f"records  {escape(str(folder))}\n{escape(str(absent))}",
-            soft_wrap=True,
-            highlight=False,
-        )
+        no_page(absent)
         return
     pages = [reproduction_page(rows, stored, chosen).write(folder / _PAGE)]
     if docs is not None:
         pages.append(write_docs(docs, rows, stored))
     for page in pages:
-        err().print(f"page  {escape(str(page))}", soft_wrap=True, highlight=False)
+        err().print(f"page     {escape(str(page))}", soft_wrap=True, highlight=False)
 
 
 def as_table(rows: Sequence[Row], claims: Mapping[str, Claim], seconds: float) -> RenderableType:
