@@ -121,7 +121,7 @@ def test_learning_nothing_changes_nothing(log):
     assert isinstance(run.calibrator, Nominal)
     np.testing.assert_array_equal(run.result.before, run.result.online)
     np.testing.assert_array_equal(run.result.held_out.before, run.result.held_out.after)
-    assert not run.result.n_neurons.any()
+    assert run.result.n_neurons is None
 
 
 def test_a_run_can_be_repeated(log):

@@ -84,7 +84,7 @@ def test_targets_out_of_reach_are_named_and_the_first_five_listed(case):
         Nominal(case.model).command(PointTarget(position, joints))
     message = str(caught.value)
     assert message.startswith(f"{case.model.arm.name} cannot bring the marker to target 3 (by ")
-    assert "mm): it is out of reach or beyond a joint limit" in message
+    assert " m): it is out of reach or beyond a joint limit" in message
     far = np.full((9, 3), 50.0)
     with pytest.raises(InvalidInput, match=r"target 1 \(.*2 \(.*3 \(.*4 \(.*5 \(by .* and 4 more:"):
         Nominal(case.model).command(PointTarget(far, joints))

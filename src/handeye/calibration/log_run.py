@@ -69,7 +69,7 @@ def calibrate_log(
         positions=_positions(seen),
         before=before,
         online=online.error,
-        n_neurons=np.cumsum(online.allocated, dtype=np.int64),
+        n_neurons=np.cumsum(online.allocated, dtype=np.int64) if method == "network" else None,
         held_out=_held_out(robot, log, method, replicate),
         rejected=tuple(str(bad) for bad in rejected),
         settings={"replicate": str(replicate), "calibrator": repr(calibrator), "frames": frames},

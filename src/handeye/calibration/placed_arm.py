@@ -81,7 +81,7 @@ class PlacedArm:
             joints[going] = np.clip(joints[going] + step, self.arm.lower, self.arm.upper)
         far = np.flatnonzero(missed > _REACHED)
         if far.size:
-            listed = ", ".join(f"{i + 1} (by {missed[i] * 1e3:.3g} mm)" for i in far[:5])
+            listed = ", ".join(f"{i + 1} (by {missed[i]:.3g} m)" for i in far[:5])
             more = f" and {far.size - 5} more" if far.size > 5 else ""
             raise InvalidInput(
                 f"{self.arm.name} cannot bring the marker to target {listed}{more}: it is out of "

@@ -49,7 +49,7 @@ class CalibrationResult:
     joints (N, n) [rad], positions (N, 3) [m] in the sensor's frame (z = 0 for a planar robot).
     before (N, k) [m]   measured minus predicted with frames placed and nominal kinematics
     online (N, k) [m]   the same with the calibrator as it stood before it learned that row
-    n_neurons (N,)      size of the network after that row
+    n_neurons (N,)      size of the network after that row, None where no network learns
     """
 
     robot: str
@@ -60,7 +60,7 @@ class CalibrationResult:
     positions: Array
     before: Array
     online: Array
-    n_neurons: Integers
+    n_neurons: Integers | None
     held_out: HeldOut | None
     rejected: tuple[str, ...]
     settings: dict[str, str]

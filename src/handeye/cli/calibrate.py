@@ -99,7 +99,7 @@ def _as_data(result: CalibrationResult, model: Path, page: Path | None) -> dict[
         "log": result.log,
         "method": result.method,
         "n_observations": len(result.before),
-        "n_neurons": int(result.n_neurons[-1]),
+        "n_neurons": None if result.n_neurons is None else int(result.n_neurons[-1]),
         "n_rejected": len(result.rejected),
         "rejected": list(result.rejected),
         "errors": result.summary(),
@@ -129,7 +129,8 @@ def _print(done: Calibration, model: Path, page: Path | None) -> None:
     console = out()
     console.print(shown)
     console.print(f"frames    {escape(done.frames)}", highlight=False)
-    console.print(f"neurons   {result.n_neurons[-1]}", highlight=False)
+    if result.n_neurons is not None:
+        console.print(f"neurons   {result.n_neurons[-1]}", highlight=False)
     if result.rejected:
         console.print(f"rejected  {len(result.rejected)} rows", highlight=False)
         for line in result.rejected[:5]:

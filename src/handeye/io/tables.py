@@ -65,7 +65,7 @@ def read_table(path: Path, *, delimiter: str = ",") -> Table:
         with path.open("rb") as stream:
             head = stream.read(len(_PARQUET_MAGIC))
     except OSError as error:
-        raise LogError(f"{path}: cannot be read ({error.strerror}): give a log file") from error
+        raise LogError(f"{path}: cannot be read ({error.strerror}): check the path") from error
     if not head:
         raise LogError(f"{path}: the file is empty: give a table with a header and one row each")
     if head == _PARQUET_MAGIC or path.suffix == ".parquet":
@@ -79,7 +79,7 @@ def read_header(path: Path, *, delimiter: str = ",") -> tuple[str, ...]:
         with path.open(encoding="utf-8-sig", newline="") as stream:
             return tuple(name.strip() for name in next(csv.reader(stream, delimiter=delimiter)))
     except OSError as error:
-        raise LogError(f"{path}: cannot be read ({error.strerror}): give a log file") from error
+        raise LogError(f"{path}: cannot be read ({error.strerror}): check the path") from error
     except (UnicodeDecodeError, csv.Error, StopIteration):
         return ()
 

@@ -96,16 +96,16 @@ def _tiles(
         else ""
     )
     rejected = f"{len(result.rejected):,} more rejected" if result.rejected else "none rejected"
-    return StatTiles(
-        [
-            _length_tile("Mean error before", before.mean, after.mean, where, "neutral"),
-            _length_tile(
-                "Mean error after", after.mean, before.mean, change, "good" if better else "bad"
-            ),
-            Tile("Observations", f"{len(result.before):,}", note=rejected),
-            Tile("Neurons", f"{int(result.n_neurons[-1]):,}", note="in use at the end"),
-        ]
-    )
+    tiles = [
+        _length_tile("Mean error before", before.mean, after.mean, where, "neutral"),
+        _length_tile(
+            "Mean error after", after.mean, before.mean, change, "good" if better else "bad"
+        ),
+        Tile("Observations", f"{len(result.before):,}", note=rejected),
+    ]
+    if result.n_neurons is not None:
+        tiles.append(Tile("Neurons", f"{int(result.n_neurons[-1]):,}", note="in use at the end"))
+    return StatTiles(tiles)
 
 
 def _length_tile(label: str, value: float, beside: float, note: str, tone: Tone) -> Tile:
@@ -136,13 +136,13 @@ def _table(result: CalibrationResult) -> Table:
 
 
 def _running(result: CalibrationResult) -> FigureBlock:
+    below = "" if result.n_neurons is None else " Below, the size of the network."
     return FigureBlock(
         running_error(result.before, result.online, neurons=result.n_neurons),
         "Every observation is predicted first and learned from afterwards. Dots are single "
         "observations, lines the mean of successive stretches: the gap between them is what "
-        "learning has gained so far. Below, the size of the network.",
-        "Position error of each observation over the run, with and without learning, and the "
-        "number of neurons.",
+        f"learning has gained so far.{below}",
+        "Position error of each observation over the run, with and without learning.",
     )
 
 
