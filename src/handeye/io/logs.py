@@ -1,4 +1,4 @@
-"""Logs of real or simulated robots as tables, CSV or Parquet.
+"""Logs of real or simulated robots as tables, CSV or Parquet; recordings of ROS are read as such.
 
 One row per observation. The header (order does not matter, other columns are ignored):
 
@@ -26,6 +26,7 @@ import numpy as np
 from handeye.arrays import Array
 from handeye.errors import LogError
 from handeye.io import columns as col
+from handeye.io.bags import is_bag, read_bag
 from handeye.io.files import replace_file
 from handeye.io.records import BadRow, Log, LogReading
 from handeye.io.tables import pyarrow, read_table
@@ -40,13 +41,16 @@ def read_log(path: Path | str, *, skip_bad: bool = False) -> LogReading:
 
     Rejected are rows with empty or non-numeric cells, too few or too many cells, time stamps
     that repeat or go back, quaternions whose length is off 1 by more than 0.01, and ranges or
-    standard deviations that are not positive. With `skip_bad` the other rows are used.
+    standard deviations that are not positive. With `skip_bad` the other rows are used. A recording
+    (.bag, .mcap, .db3 or the folder of a ROS 2 bag) is read with the defaults of `bags.read_bag`.
 
     Raises:
         LogError: for a file that is no log, missing columns, a column in the wrong unit (angles
             beyond 4 pi, positions beyond 50 m), rejected rows without `skip_bad`, or no row left.
-        MissingExtra: for a Parquet file without pyarrow.
+        MissingExtra: for a Parquet file without pyarrow, or a recording without rosbags.
     """
+    if is_bag(path):
+        return read_bag(path, skip_bad=skip_bad)
     table = read_table(Path(path))
     found = list(table.columns)
     joints, others = col.required(table.file, found)
