@@ -1,0 +1,30 @@
+"""A robot that learns to catch balls (chapter 4): its world, its learner, its rivals."""
+
+from handeye.catching.arm import ARMS as ARMS
+from handeye.catching.arm import HEAVY_ARM as HEAVY_ARM
+from handeye.catching.arm import LIGHT_ARM as LIGHT_ARM
+from handeye.catching.arm import Arm as Arm
+from handeye.catching.ball import BALLS as BALLS
+from handeye.catching.ball import HEAVY_BALL as HEAVY_BALL
+from handeye.catching.ball import LIGHT_BALL as LIGHT_BALL
+from handeye.catching.ball import Ball as Ball
+from handeye.catching.layout import Cup as Cup
+from handeye.catching.layout import Layout as Layout
+from handeye.catching.play import Controller as Controller
+from handeye.catching.play import Recording as Recording
+from handeye.catching.play import play as play
+from handeye.catching.profile import AntisymmetricProfile as AntisymmetricProfile
+from handeye.catching.pursuit import Movements as Movements
+from handeye.catching.pursuit import Pulses as Pulses
+from handeye.catching.pursuit import draw_pursuits as draw_pursuits
+from handeye.catching.pursuit import execute as execute
+from handeye.catching.state import CAUGHT as CAUGHT
+from handeye.catching.state import KNOCKED_OUT as KNOCKED_OUT
+from handeye.catching.state import MISSED as MISSED
+from handeye.catching.state import State as State
+from handeye.catching.throws import Throws as Throws
+from handeye.catching.throws import can_be_caught as can_be_caught
+from handeye.catching.throws import draw_throws as draw_throws
+from handeye.catching.throws import launch as launch
+from handeye.catching.world import Sensed as Sensed
+from handeye.catching.world import World as World
