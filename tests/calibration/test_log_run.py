@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from tests.calibration.cases import CASES, sightings
 
 from handeye.calibration.calibrators import NetworkCorrection, Nominal
-from handeye.calibration.log_run import calibrate_log, robot_name, working_range
+from handeye.calibration.combined import Combined
+from handeye.calibration.log_run import Method, calibrate_log, robot_name, working_range
 from handeye.calibration.planar_placement import eye_points
 from handeye.calibration.results import ErrorSummary
 from handeye.calibration.session import learn_from_log
@@ -27,8 +28,8 @@ def log_of(seen) -> Any:
     return Log("run.csv", ("alpha", "beta"), seen, np.arange(2, len(seen) + 2))
 
 
-def calibrated(log, robot, **settings) -> Any:
-    return calibrate_log(log, robot, **settings)
+def calibrated(log, robot, *, method: Method = "network", **settings) -> Any:
+    return calibrate_log(log, robot, method=method, **settings)
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +79,7 @@ def test_a_random_third_is_held_out(n, replicate):
     assert set(held_out.rows) == set(drawn)
 
 
-@pytest.mark.parametrize("method", ["network", "nominal"])
+@pytest.mark.parametrize("method", ["network", "nominal", "combined"])
 def test_held_out_rows_take_no_part_in_anything(log, method):
     first = calibrated(log, NOMINAL, method=method).result.held_out
     victims, kept = first.rows[::2], first.rows[1::2]
@@ -202,3 +203,14 @@ def test_a_summary_is_made_of_the_lengths_of_errors():
     np.testing.assert_allclose(summary.rms, np.sqrt(np.mean(lengths**2)))
     np.testing.assert_allclose(summary.p95, 95.05)
     np.testing.assert_allclose(summary.max, 100.0)
+
+
+def test_the_default_is_the_combined_calibrator_where_the_robot_allows_it(log):
+    run = calibrate_log(log, NOMINAL)
+    assert isinstance(run.calibrator, Combined)
+    assert run.result.method == "combined"
+    assert run.result.n_neurons is None
+    placed = calibrate_log(log_of(SPACE.seen), SPACE.model.arm)
+    assert isinstance(placed.calibrator, NetworkCorrection)
+    with pytest.raises(LogError, match="combined knows only the planar robot"):
+        calibrate_log(log_of(SPACE.seen), SPACE.model.arm, method="combined")

@@ -8,6 +8,7 @@ import pytest
 from tests.calibration.cases import CASES, KINDS, sightings
 
 from handeye.calibration.calibrators import NetworkCorrection, Nominal
+from handeye.calibration.combined import Combined, DataSheet
 from handeye.calibration.models import PlanarMap, PlanarModel
 from handeye.calibration.placed_arm import PlacedArm
 from handeye.calibration.session import learn_from_log
@@ -226,3 +227,14 @@ def test_checkpoints_are_saved_whenever_enough_was_learned(tmp_path):
     np.testing.assert_array_equal(
         resumed.calibrator.command(seen.target), learner.command(seen.target)
     )
+
+
+def test_a_stored_combined_calibrator_learns_on_alike(tmp_path):
+    seen = sightings(n=60)
+    calibrator = Combined(PlanarModel(NOMINAL), DataSheet(link=0.03))
+    calibrator.observe_many(seen[:40])
+    save_model(tmp_path / "model", calibrator, 40)
+    loaded = load(tmp_path / "model")
+    assert loaded.sheet == calibrator.sheet
+    assert loaded.health() == calibrator.health()
+    assert_alike(loaded, calibrator, seen[40:])

@@ -6,6 +6,7 @@ import numpy as np
 
 from handeye.arrays import Array
 from handeye.calibration.calibrators import NetworkCorrection, Nominal
+from handeye.calibration.combined import Combined
 from handeye.calibration.estimation import ParameterEstimator
 from handeye.calibration.models import AnyModel, PlanarModel
 from handeye.calibration.placed_arm import PlacedArm
@@ -21,7 +22,7 @@ from handeye.randomness import stream
 from handeye.robots.arm import Arm
 
 Robot = PlanarPlant | Arm
-Method = Literal["network", "estimator", "nominal"]
+Method = Literal["combined", "network", "estimator", "nominal"]
 
 _FEWEST_ROWS = 9
 _STDS = 3.0
@@ -39,7 +40,7 @@ def calibrate_log(
     log: Log,
     robot: Robot,
     *,
-    method: Method = "network",
+    method: Method | None = None,
     rejected: tuple[BadRow, ...] = (),
     replicate: int = 0,
     after_each: AfterEach = ignore,
@@ -49,12 +50,14 @@ def calibrate_log(
     Frames between sensor and base and between flange and marker come first (closed form, then least
     squares over all rows): with them alone the error is `before`. Then a second calibrator, with
     frames of its own, learns a random two thirds of the rows and is tested on the rest, so that
-    `held_out` judges rows that had no part in anything. `replicate` chooses the split.
+    `held_out` judges rows that had no part in anything. `replicate` chooses the split. The default
+    method is `combined` for the planar robot and `network` for others.
 
     Raises:
         LogError: too few rows, or a log of another kind of robot.
     """
     _check(log, robot)
+    method = method or ("combined" if isinstance(robot, PlanarPlant) else "network")
     seen = log.observations
     model, frames = place(robot, seen)
     calibrator = calibrator_for(model, method)
@@ -73,6 +76,7 @@ def calibrate_log(
         held_out=_held_out(robot, log, method, replicate),
         rejected=tuple(str(bad) for bad in rejected),
         settings={"replicate": str(replicate), "calibrator": repr(calibrator), "frames": frames},
+        findings=_findings(calibrator),
     )
     return Calibration(result, calibrator, frames)
 
@@ -91,19 +95,17 @@ def calibrator_for(model: AnyModel, method: Method) -> AnyCalibrator:
     """A calibrator that has seen nothing.
 
     Raises:
-        LogError: the estimator for a robot other than the planar one.
+        LogError: a method that needs the planar robot, for another one.
     """
-    match method:
-        case "nominal":
-            return Nominal(model)
-        case "network":
-            return NetworkCorrection(model)
-        case "estimator":
-            if not isinstance(model, PlanarModel):
-                raise LogError(
-                    "the parameter estimator knows only the planar robot: choose the method network"
-                )
-            return ParameterEstimator(model)
+    if method == "nominal":
+        return Nominal(model)
+    if method == "network":
+        return NetworkCorrection(model)
+    if not isinstance(model, PlanarModel):
+        raise LogError(
+            f"the method {method} knows only the planar robot so far: choose the method network"
+        )
+    return Combined(model) if method == "combined" else ParameterEstimator(model)
 
 
 def place(robot: Robot, seen: Observation) -> tuple[AnyModel, str]:
@@ -133,6 +135,14 @@ def _resolution(seen: PointObservation) -> float:
     if seen.position_std is None:
         return 1e-4
     return _STDS * float(np.median(np.linalg.norm(seen.position_std, axis=1)))
+
+
+def _findings(calibrator: AnyCalibrator) -> tuple[str, ...]:
+    """State, changes of parts and undetermined directions; single outliers are in the state."""
+    if not isinstance(calibrator, Combined):
+        return ()
+    changes = [str(event) for event in calibrator.events if event.kind != "outlier"]
+    return (calibrator.health(), *changes, calibrator.knowledge().status)
 
 
 def _held_out(robot: Robot, log: Log, method: Method, replicate: int) -> HeldOut:

@@ -50,6 +50,7 @@ class CalibrationResult:
     before (N, k) [m]   measured minus predicted with frames placed and nominal kinematics
     online (N, k) [m]   the same with the calibrator as it stood before it learned that row
     n_neurons (N,)      size of the network after that row, None where no network learns
+    findings            what a calibrator that watches the robot's parts says of them, in words
     """
 
     robot: str
@@ -64,6 +65,7 @@ class CalibrationResult:
     held_out: HeldOut | None
     rejected: tuple[str, ...]
     settings: dict[str, str]
+    findings: tuple[str, ...] = ()
 
     def summary(self) -> dict[str, dict[str, float]]:
         """The error statistics of every stage, ready for JSON."""

@@ -6,6 +6,8 @@ from typing import Any
 
 from handeye.arrays import Array
 from handeye.calibration.calibrators import NetworkCorrection, Nominal
+from handeye.calibration.combined import Combined
+from handeye.calibration.combined.storage import combined_from_arrays, combined_to_arrays
 from handeye.calibration.estimation.parameter_estimator import ParameterEstimator
 from handeye.calibration.estimation.storage import estimator_from_arrays, estimator_to_arrays
 from handeye.calibration.models import PlanarMap, PlanarModel
@@ -36,12 +38,12 @@ class StoredModel:
 
 
 def save_model(path: str | PathLike[str], calibrator: AnyCalibrator, observed: int) -> None:
-    """Write a Nominal, NetworkCorrection or ParameterEstimator; an old file is replaced at the end.
+    """Write a calibrator; an old file is replaced once the new one is complete.
 
     Raises:
         InvalidInput: a calibrator or a model of another kind, or an arm that is not from a URDF.
     """
-    if not isinstance(calibrator, Nominal | NetworkCorrection | ParameterEstimator):
+    if not isinstance(calibrator, Nominal | NetworkCorrection | ParameterEstimator | Combined):
         raise InvalidInput(f"a {type(calibrator).__name__} cannot be stored yet")
     arrays, header = _model_parts(calibrator.model)
     header |= {"calibrator": type(calibrator).__name__, "observed": observed}
@@ -51,6 +53,9 @@ def save_model(path: str | PathLike[str], calibrator: AnyCalibrator, observed: i
     if isinstance(calibrator, ParameterEstimator):
         learned, header["estimator"] = estimator_to_arrays(calibrator)
         arrays |= {f"estimator.{name}": array for name, array in learned.items()}
+    if isinstance(calibrator, Combined):
+        learned, header["combined"] = combined_to_arrays(calibrator)
+        arrays |= {f"combined.{name}": array for name, array in learned.items()}
     write_tensors(path, FORMAT, VERSION, arrays, header)
 
 
@@ -64,22 +69,33 @@ def load_model(path: str | PathLike[str]) -> StoredModel:
     arrays, header = read_tensors(path, FORMAT, VERSION, "a calibrated handeye model")
     try:
         model = _model_from(arrays, header)
-        if header["calibrator"] == "Nominal":
-            return StoredModel(Nominal(model), int(header["observed"]))
-        if header["calibrator"] == "ParameterEstimator":
-            prefix = "estimator."
-            learned = {n[len(prefix) :]: a for n, a in arrays.items() if n.startswith(prefix)}
-            estimator = estimator_from_arrays(model, learned, header["estimator"])
-            return StoredModel(estimator, int(header["observed"]))
-        inside = {n.removeprefix("network."): a for n, a in arrays.items() if "network." in n}
-        network = from_arrays(inside, header["network"])
-        return StoredModel(NetworkCorrection(model, network), int(header["observed"]))
+        return StoredModel(_calibrator(model, arrays, header), int(header["observed"]))
     except (
         FileFormatError, LookupError, OverflowError, TypeError, ValueError,
     ) as error:  # fmt: skip
         raise FileFormatError(
             f"{path}: damaged, its parts do not fit together ({error})"
         ) from error
+
+
+def _calibrator(model: Any, arrays: dict[str, Array], header: Header) -> AnyCalibrator:
+    match header["calibrator"]:
+        case "Nominal":
+            return Nominal(model)
+        case "ParameterEstimator":
+            return estimator_from_arrays(model, _part("estimator.", arrays), header["estimator"])
+        case "Combined":
+            return combined_from_arrays(model, _part("combined.", arrays), header["combined"])
+        case "NetworkCorrection":
+            return NetworkCorrection(
+                model, from_arrays(_part("network.", arrays), header["network"])
+            )
+        case other:
+            raise FileFormatError(f"it holds an unknown calibrator, {other!r}")
+
+
+def _part(prefix: str, arrays: dict[str, Array]) -> dict[str, Array]:
+    return {n[len(prefix) :]: array for n, array in arrays.items() if n.startswith(prefix)}
 
 
 def checkpoints(path: str | PathLike[str], calibrator: AnyCalibrator, every: int) -> AfterEach:

@@ -11,15 +11,27 @@ from handeye.calibration.log_checks import check_log
 from handeye.calibration.log_run import Calibration, arm_of, calibrate_log
 from handeye.calibration.results import CalibrationResult, ErrorSummary
 from handeye.calibration.storage import save_model
+from handeye.cli.bags import (
+    Frame,
+    JointsTopic,
+    KnownDelay,
+    Marker,
+    PointsTopic,
+    ReceiptTimes,
+    Tolerance,
+    read_any,
+    report_data,
+)
 from handeye.cli.console import no_page, out, progress_bar, table, write_json
 from handeye.cli.robot import ROBOT_HELP, load_robot
 from handeye.errors import MissingExtra
-from handeye.io.logs import read_log
+from handeye.io.bags import BagOptions
 
 
 class MethodName(StrEnum):
     """What learns."""
 
+    combined = "combined"
     network = "network"
     estimator = "estimator"
     nominal = "nominal"
@@ -28,19 +40,25 @@ class MethodName(StrEnum):
 def calibrate(
     log: Annotated[
         Path,
-        typer.Argument(help="Log of the robot at work, .csv or .parquet.", show_default=False),
+        typer.Argument(
+            help="Log of the robot at work: .csv, .parquet, or a recording (.bag, .mcap, .db3 or "
+            "the folder of a ROS 2 bag).",
+            show_default=False,
+        ),
     ],
     robot: Annotated[str, typer.Option(help=ROBOT_HELP, show_default=False)],
     tip: Annotated[
         str | None, typer.Option(help="Link of the URDF that carries the marker.")
     ] = None,
     method: Annotated[
-        MethodName,
+        MethodName | None,
         typer.Option(
-            help="What learns: a network correction; an estimator of the kinematic parameters "
-            "(planar robot only); or nothing."
+            help="What learns: a model of the whole chain (planar robot only, the default there); "
+            "a network correction (the default elsewhere); an estimator of the kinematic "
+            "parameters (planar robot only); or nothing.",
+            show_default=False,
         ),
-    ] = MethodName.network,
+    ] = None,
     folder: Annotated[
         Path, typer.Option("--out", help="Folder for the model and the report page.")
     ] = Path("out"),
@@ -53,6 +71,13 @@ def calibrate(
     replicate: Annotated[
         int, typer.Option(min=0, help="Which random third of the rows is held out.")
     ] = 0,
+    joints_topic: JointsTopic = None,
+    points_topic: PointsTopic = None,
+    frame: Frame = None,
+    marker: Marker = None,
+    tolerance: Tolerance = 0.1,
+    delay: KnownDelay = None,
+    receipt_times: ReceiptTimes = False,
 ) -> None:
     """Calibrate a robot from a log of what its eye saw of its hand.
 
@@ -61,13 +86,15 @@ def calibrate(
     The columns of a log are described in docs/how-to/log-format.md.
     """
     nominal = load_robot(robot, tip)
-    reading = read_log(log, skip_bad=skip_bad)
-    checked = check_log(arm_of(nominal), reading.log, skip_bad=skip_bad)
+    arm = arm_of(nominal)
+    options = BagOptions(joints_topic, points_topic, frame, marker, tolerance, delay, receipt_times)
+    reading = read_any(log, options, arm=arm, skip_bad=skip_bad)
+    checked = check_log(arm, reading.log, skip_bad=skip_bad)
     with progress_bar("learning from the log", len(checked.log)) as (progress, task):
         done = calibrate_log(
             checked.log,
             nominal,
-            method=method.value,
+            method=None if method is None else method.value,
             rejected=(*reading.rejected, *checked.rejected),
             replicate=replicate,
             after_each=lambda n: progress.update(task, completed=n),
@@ -77,7 +104,7 @@ def calibrate(
     save_model(model, done.calibrator, len(checked.log))
     page = _page(result, folder / f"{log.stem}.html")
     if json_file is not None:
-        write_json(_as_data(result, model, page), json_file)
+        write_json(_as_data(result, model, page) | report_data(reading), json_file)
     if json_file != "-":
         _print(done, model, page)
 
@@ -103,6 +130,7 @@ def _as_data(result: CalibrationResult, model: Path, page: Path | None) -> dict[
         "n_rejected": len(result.rejected),
         "rejected": list(result.rejected),
         "errors": result.summary(),
+        "findings": list(result.findings),
         "unit": "m",
         "model": str(model),
         "page": None if page is None else str(page),
@@ -131,6 +159,9 @@ def _print(done: Calibration, model: Path, page: Path | None) -> None:
     console.print(f"frames    {escape(done.frames)}", highlight=False)
     if result.n_neurons is not None:
         console.print(f"neurons   {result.n_neurons[-1]}", highlight=False)
+    for i, finding in enumerate(result.findings):
+        head = "" if i else "findings"
+        console.print(f"{head:<10}{escape(finding)}", highlight=False, soft_wrap=True)
     if result.rejected:
         console.print(f"rejected  {len(result.rejected)} rows", highlight=False)
         for line in result.rejected[:5]:

@@ -52,6 +52,7 @@ def calibration_page(result: CalibrationResult, *, date: str = "") -> Page:
         sections=[
             Section("", [_tiles(result, judged.where, before, after)]),
             Section("In numbers", [_table(result)]),
+            *_findings(result),
             Section("Learning while working", [_running(result)]),
             Section("Where the hand misses", _places(result, judged)),
             *_rejected(result),
@@ -59,6 +60,12 @@ def calibration_page(result: CalibrationResult, *, date: str = "") -> Page:
         settings=result.settings,
         date=date,
     )
+
+
+def _findings(result: CalibrationResult) -> list[Section]:
+    if not result.findings:
+        return []
+    return [Section("What was found", [Notes("State of the robot", result.findings)])]
 
 
 def _judged(result: CalibrationResult) -> _Verdict:
