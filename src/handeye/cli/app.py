@@ -7,6 +7,7 @@ import typer
 import handeye
 from handeye.cli.apply import apply
 from handeye.cli.calibrate import calibrate
+from handeye.cli.catch import catch
 from handeye.cli.console import ErrorsForPeople
 from handeye.cli.convert import convert
 from handeye.cli.demo import demo
@@ -44,6 +45,7 @@ def options(
 
 _WATCH, _OWN, _RESEARCH = "Watch it learn", "Your robot", "The thesis"
 app.command(rich_help_panel=_WATCH)(demo)
+app.command(rich_help_panel=_WATCH)(catch)
 app.command(rich_help_panel=_WATCH)(simulate)
 app.command(rich_help_panel=_OWN)(calibrate)
 app.command(rich_help_panel=_OWN)(apply)

@@ -13,14 +13,17 @@ from rich.text import Text
 
 from handeye.cli.console import err, no_page, out, progress_bar, write_json
 from handeye.errors import InvalidInput, MissingExtra
-from handeye.thesis.claims import Claim, load_claims
+from handeye.thesis.claims import Claim, load_all
 from handeye.thesis.judge import Row
 from handeye.thesis.reproduce import Selection, choose, measure, verdicts
 from handeye.thesis.storage import Stored, read_records, write_records
-from handeye.thesis.wording import measured_text, sentence, stated_text, tally
+from handeye.thesis.wording import TARGETS, apart, measured_text, sentence, stated_text, tally
 
-_STYLES = {"reproduced": "green", "not reproduced": "bold red", "not testable": "yellow"}
+_GOOD, _BAD = "green", "bold red"
+_STYLES = {"reproduced": _GOOD, "not reproduced": _BAD, "met": _GOOD, "not met": _BAD}
+_STYLES["not testable"] = "yellow"
 _HEAD = ("claim", "stated", "measured", "verdict")
+_TARGET_HEAD = ("target", "asked for", "measured", "verdict")
 _WHOLE, _PART = Path("out/reproduction"), Path("out/reproduction-part")
 _PAGE = "index.html"
 
@@ -32,7 +35,7 @@ def reproduce(
         list[str] | None,
         typer.Argument(
             metavar="CLAIM|FIGURE",
-            help="Claims (plant-uncorrected), beginnings of their names (preferred), quoted "
+            help="Claims or targets (plant-uncorrected), beginnings of names (preferred), quoted "
             "patterns ('*-noisy'), or figures (3.22, figure-3.22). Without any, all that this "
             "version can measure and draw.",
             show_default=False,
@@ -40,7 +43,9 @@ def reproduce(
     ] = None,
     replicates: Annotated[
         int | None,
-        typer.Option(min=1, help="Repetitions with other random numbers; 20 by default."),
+        typer.Option(
+            min=1, help="Repetitions with other random numbers; 20 by default, 10 for catching."
+        ),
     ] = None,
     jobs: Annotated[
         int | None, typer.Option(min=1, help="Processes; one for each core by default.")
@@ -77,7 +82,8 @@ def reproduce(
     """Measure again what the thesis states, compare, and draw its figures.
 
     Each claim is measured in simulation over replicates, and judged by a rule that is part of its
-    data. What was measured is stored; verdicts and a page with every figure are made from that. A
+    data. Targets beyond the thesis are judged in the same way and come in a table of their own.
+    What was measured is stored; verdicts and a page with every figure are made from that. A
     verdict is a result like any other: the exit code is 0 whatever they are.
     """
     if json_file not in {None, "-"} and Path(str(json_file)).is_dir():
@@ -98,9 +104,9 @@ def reproduce(
         claims = {claim.id: claim for claim in chosen.claims}
         if rows:
             out().print(as_table(rows, claims, monotonic() - started), highlight=False)
-        pending = 0 if names else sum(claim.measure is None for claim in load_claims())
+        pending = [] if names else [claim.id for claim in load_all() if claim.measure is None]
         if pending:
-            out().print(f"{pending} further claims have no experiment yet.", style="dim")
+            out().print(f"No experiment yet for {', '.join(pending)}.", style="dim")
     if json_file is not None:
         write_json([row.to_json() for row in rows], json_file)
     if target != records:
@@ -137,18 +143,32 @@ def _write_page(
 
 
 def as_table(rows: Sequence[Row], claims: Mapping[str, Claim], seconds: float) -> RenderableType:
-    """One line of figures for each claim, and below it what it says and what there is to know."""
+    """One line of figures for each claim, and below it what it says and what there is to know.
+
+    Targets come in a table of their own.
+    """
+    stated, targets = apart(rows)
+    parts: list[RenderableType] = []
+    if stated:
+        parts += _table(_HEAD, stated, claims)
+    if targets:
+        parts += [Text(f"{TARGETS}\n", "bold"), *_table(_TARGET_HEAD, targets, claims)]
+    return Group(*parts, *_summary(rows, seconds))
+
+
+def _table(head: Cells, rows: Sequence[Row], claims: Mapping[str, Claim]) -> list[RenderableType]:
     cells = [_cells(row) for row in rows]
-    widths = [max(map(len, column)) for column in zip(_HEAD, *cells, strict=True)]
-    parts: list[RenderableType] = [_line(_HEAD, widths, ("bold",) * 4)]
+    widths = [max(map(len, column)) for column in zip(head, *cells, strict=True)]
+    parts: list[RenderableType] = [_line(head, widths, ("bold",) * 4)]
     for row, texts in zip(rows, cells, strict=True):
         claim = claims[row.id]
         parts.append(_line(texts, widths, ("bold cyan", "", "", _STYLES[row.verdict])))
-        said = Text.assemble(sentence(claim.says), (f" (thesis {claim.where})", "dim"))
+        where = "" if claim.is_target else f" (thesis {claim.where})"
+        said = Text.assemble(sentence(claim.says), (where, "dim"))
         notes = [said, Text(row.note, "dim")] if row.note else [said]
         parts += [Padding(note, (0, 0, 0, 2), expand=False) for note in notes]
         parts.append("")
-    return Group(*parts, *_summary(rows, seconds))
+    return parts
 
 
 def _cells(row: Row) -> Cells:

@@ -4,6 +4,7 @@ One file with its style and pictures inside: it asks nothing from the network an
 """
 
 import os
+from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.metadata import version
@@ -82,6 +83,33 @@ class FigureBlock:
 
 
 @dataclass(frozen=True)
+class AnimationBlock:
+    """A moving picture with a caption and `alt`, as for a figure.
+
+    light, dark  GIF files for light and for dark ground
+    still        PNG file for readers who want no motion, and for paper
+    width        of the picture on the page, at most [px]
+    """
+
+    light: bytes
+    dark: bytes
+    still: bytes
+    width: int
+    caption: str
+    alt: str
+    kind: ClassVar[str] = "animation"
+
+    @property
+    def urls(self) -> dict[str, str]:
+        """The pictures as addresses that hold them."""
+        kinds = {"light": "gif", "dark": "gif", "still": "png"}
+        return {
+            name: f"data:image/{kind};base64,{b64encode(getattr(self, name)).decode()}"
+            for name, kind in kinds.items()
+        }
+
+
+@dataclass(frozen=True)
 class Prose:
     """Paragraphs, separated by empty lines."""
 
@@ -104,7 +132,7 @@ class Notes:
     kind: ClassVar[str] = "notes"
 
 
-Block = StatTiles | Table | FigureBlock | Prose | Notes
+Block = StatTiles | Table | FigureBlock | AnimationBlock | Prose | Notes
 
 
 @dataclass(frozen=True)
