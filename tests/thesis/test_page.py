@@ -122,8 +122,28 @@ def test_headlines():
     assert headline([row(), row("not reproduced")]) == "1 of 2 claims reproduced"
     assert headline([row("not testable")]) == "0 of 1 claim reproduced"
     assert tally([row(), row("not testable")]) == {
-        "reproduced": 1, "not reproduced": 0, "not testable": 1,
+        "reproduced": 1, "not reproduced": 0, "met": 0, "not met": 0, "not testable": 1,
     }  # fmt: skip
+
+
+def target(verdict: str = "met", **changes: object) -> Row:
+    return row(verdict, id="catch-improved", stated=0.99, unit="fraction", measured=0.992, low=0.99,
+               high=0.994, **changes)  # fmt: skip
+
+
+def test_targets_are_counted_by_themselves():
+    assert headline([target()]) == "The target is met"
+    assert headline([row(), row(), target()]) == "All 2 claims are reproduced, the target is met"
+    assert headline([row(), target(), target("not met")]) == (
+        "The claim is reproduced, 1 of 2 targets met"
+    )
+
+
+def test_what_a_target_asks_for_has_its_direction():
+    assert stated_text(target()) == "at least 99 %"
+    asked = {"combined-normal-noisy-50": 1.06, "combined-calibrated-uncertainty": 1.0}
+    texts = [stated_text(replace(target(), id=i, stated=v, unit="ratio")) for i, v in asked.items()]
+    assert texts == ["at most 1.06", "within 15 % of 1"]
 
 
 def test_rows_in_words():

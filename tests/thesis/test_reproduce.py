@@ -1,7 +1,7 @@
 import pytest
 
 from handeye.errors import InvalidInput
-from handeye.thesis.claims import load_claims
+from handeye.thesis.claims import load_all
 from handeye.thesis.experiment import Effort
 from handeye.thesis.reproduce import choose, reproduce, select, verdicts
 from handeye.thesis.storage import Stored
@@ -27,14 +27,14 @@ def test_a_claim_is_meant_before_those_whose_names_begin_with_its_own():
 
 
 def test_claims_come_once_and_in_the_order_of_the_thesis():
-    assert ids("preferred", "plant", "*") == [c.id for c in load_claims() if c.measure]
+    assert ids("preferred", "plant", "*") == [c.id for c in load_all() if c.measure]
 
 
 def test_patterns_pass_over_claims_that_cannot_be_measured_yet():
-    beginning_so = [claim for claim in load_claims() if claim.id.startswith("pid-")]
+    beginning_so = [claim for claim in load_all() if claim.id.startswith("paired-")]
     assert beginning_so
     assert not any(claim.measure for claim in beginning_so)
-    assert ids("p*") == [c.id for c in load_claims() if c.id.startswith("p") and c.measure]
+    assert ids("p*") == [c.id for c in load_all() if c.id.startswith("p") and c.measure]
 
 
 def test_unknown_names_are_answered_with_near_ones():
@@ -52,8 +52,8 @@ def test_a_name_is_not_matched_in_the_middle_of_a_word():
 
 
 def test_claims_without_an_experiment_are_named():
-    with pytest.raises(InvalidInput, match=r"no experiment .* ball-nets, ball-recognition; it has"):
-        reproduce(["ball-*"])
+    with pytest.raises(InvalidInput, match=r"no experiment .* bep-hand-eye; it has"):
+        reproduce(["bep-*"])
 
 
 def test_rows_of_one_claim_with_a_measured_interval():

@@ -10,6 +10,7 @@ from handeye.catching.ball import LIGHT_BALL as LIGHT_BALL
 from handeye.catching.ball import Ball as Ball
 from handeye.catching.layout import Cup as Cup
 from handeye.catching.layout import Layout as Layout
+from handeye.catching.learner import Learner as Learner
 from handeye.catching.play import Controller as Controller
 from handeye.catching.play import Recording as Recording
 from handeye.catching.play import play as play
@@ -18,6 +19,10 @@ from handeye.catching.pursuit import Movements as Movements
 from handeye.catching.pursuit import Pulses as Pulses
 from handeye.catching.pursuit import draw_pursuits as draw_pursuits
 from handeye.catching.pursuit import execute as execute
+from handeye.catching.settings import IMPROVED as IMPROVED
+from handeye.catching.settings import SMOOTH as SMOOTH
+from handeye.catching.settings import THESIS as THESIS
+from handeye.catching.settings import CatcherSettings as CatcherSettings
 from handeye.catching.state import CAUGHT as CAUGHT
 from handeye.catching.state import KNOCKED_OUT as KNOCKED_OUT
 from handeye.catching.state import MISSED as MISSED

@@ -1,4 +1,4 @@
-"""What the thesis states, as data."""
+"""What the thesis states, and what is to be better than that, as data."""
 
 import tomllib
 from collections.abc import Mapping
@@ -24,7 +24,8 @@ class Claim:
     """One statement, and what in the records of which experiment measures it.
 
     The keys are explained at the top of `claims.toml`. `measure` is None as long as no experiment
-    of this version can check the claim.
+    of this version can check the claim. A target is a claim that the thesis does not make: it has
+    no place there (`where` is empty).
     """
 
     id: str
@@ -38,26 +39,47 @@ class Claim:
     measure: str | None = None
     limits: Mapping[str, float] = field(default_factory=dict[str, float])
     also: tuple[Also, ...] = ()
+    worst_of: tuple[str, ...] = ()
+
+    @property
+    def is_target(self) -> bool:
+        """Whether it says what has to be reached, and not what the thesis has reached."""
+        return not self.where
 
     @property
     def experiments(self) -> tuple[str, ...]:
         """The experiments whose records it looks at, each once."""
-        paths = [self.measure, *(other.measure for other in self.also)]
+        paths = [self.measure, *self.worst_of, *(other.measure for other in self.also)]
         return tuple(dict.fromkeys(path.split("/")[0] for path in paths if path))
 
 
 def load_claims() -> tuple[Claim, ...]:
-    """Every claim, in the order of the thesis."""
-    text = resources.files("handeye.thesis").joinpath("claims.toml").read_text(encoding="utf-8")
-    return tuple(_claim(table) for table in tomllib.loads(text)["claim"])
+    """Every claim of the thesis, in its order."""
+    return _load("claims.toml")
+
+
+def load_targets() -> tuple[Claim, ...]:
+    """Where this package has to be better than the thesis."""
+    return _load("targets.toml")
+
+
+def load_all() -> tuple[Claim, ...]:
+    """The claims of the thesis, then the targets."""
+    return load_claims() + load_targets()
 
 
 @cache
 def claims_by_id() -> Mapping[str, Claim]:
-    """Every claim, by id."""
-    return {claim.id: claim for claim in load_claims()}
+    """Every claim and every target, by id."""
+    return {claim.id: claim for claim in load_all()}
+
+
+def _load(name: str) -> tuple[Claim, ...]:
+    text = resources.files("handeye.thesis").joinpath(name).read_text(encoding="utf-8")
+    return tuple(_claim(table) for table in tomllib.loads(text)["claim"])
 
 
 def _claim(table: dict[str, Any]) -> Claim:
     others = tuple(Also(**{"unit": table.get("unit", ""), **o}) for o in table.pop("also", ()))
-    return Claim(**table, also=others)
+    where, worst_of = table.pop("where", ""), tuple(table.pop("worst_of", ()))
+    return Claim(where=where, **table, also=others, worst_of=worst_of)

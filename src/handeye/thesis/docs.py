@@ -11,11 +11,15 @@ from handeye.thesis.comparison import comparison_markdown
 from handeye.thesis.figures import FIGURES, Drawn, NotDrawn, drawable
 from handeye.thesis.judge import Row
 from handeye.thesis.manifest import Manifest
-from handeye.thesis.page import claim_cells, headline
+from handeye.thesis.page import headline
 from handeye.thesis.storage import Stored
-from handeye.thesis.wording import sentence
+from handeye.thesis.tables import claim_cells, later
+from handeye.thesis.wording import TARGETS, apart, kept, sentence
 
-SHOWN = ("3.10", "3.15", "3.21", "3.22", "3.31", "3.34", "3.37", "3.38", "3.40", "3.45", "3.51")
+SHOWN = (
+    "3.10", "3.15", "3.21", "3.22", "3.31", "3.34", "3.37", "3.38", "3.40", "3.45", "3.51",
+    "4.1", "4.7", "4.11", "4.12", "4.14", "4.16",
+)  # fmt: skip
 """Figures that the page shows; all others are on the page that the command writes."""
 
 _PICTURES = "reproduction"
@@ -24,7 +28,7 @@ _AGAIN = """\
 handeye reproduce
 ```
 
-makes all of it again, with every figure of chapter 3, and writes one page,
+makes all of it again, with every figure of chapters 3 and 4, and writes one page,
 `out/reproduction/index.html`. `handeye reproduce 3.22` makes one figure and judges the claims that
 it shows.
 """
@@ -43,15 +47,18 @@ def write_docs(folder: str | os.PathLike[str], rows: Sequence[Row], stored: Stor
 
 
 def _markdown(rows: Sequence[Row], stored: Stored, shown: Sequence[Drawn]) -> str:
+    claims, targets = apart(rows)
     parts = [
         "# Reproduction\n",
         "<!-- Written by `handeye reproduce`; do not edit. -->\n",
-        f"**{headline(rows)}** (chapter 3). {_how(stored.manifest)}\n",
+        f"**{headline(rows)}** (chapters 3 and 4). {_how(stored.manifest)}\n",
         _AGAIN,
         "## Claims\n",
-        _claims(rows),
+        _claims(claims),
         "## Not reproduced: what was found and tried\n",
-        _failed(rows),
+        _failed(claims),
+        f"## {TARGETS}\n",
+        _targets(targets),
     ]
     if "comparison" in stored.manifest.experiments:
         parts += ["## Network or estimator?\n", comparison_markdown(stored.records)]
@@ -61,13 +68,27 @@ def _markdown(rows: Sequence[Row], stored: Stored, shown: Sequence[Drawn]) -> st
 
 
 def _how(manifest: Manifest) -> str:
-    most = max((ran.replicates for ran in manifest.experiments.values()), default=1)
     trial = "" if manifest.effort == 1.0 else " This was a trial run: its verdicts mean nothing."
     versions = ", ".join(f"{name} {number}" for name, number in manifest.versions.items())
     return (
-        f"{most} replicates with other random numbers; ± is the 95 % interval of their mean. An "
+        f"{_replicates(manifest)} with other random numbers; ± is the 95 % interval of their "
+        "mean. An "
         f"ordering or shape is checked in each replicate. {sentence(versions)}.{trial}"
     )
+
+
+def _replicates(manifest: Manifest) -> str:
+    """How many there are, and of which experiments fewer; one where nothing is random."""
+    counts = {ran.replicates for ran in manifest.experiments.values() if not ran.deterministic}
+    if not counts:
+        return "1 replicate"
+    most = max(counts)
+    fewer = [
+        f"{ran.replicates} of {name}"
+        for name, ran in manifest.experiments.items()
+        if ran.replicates < most and not ran.deterministic
+    ]
+    return f"{most} replicates" + (f" ({', '.join(fewer)})" if fewer else "")
 
 
 def _claims(rows: Sequence[Row]) -> str:
@@ -76,21 +97,28 @@ def _claims(rows: Sequence[Row]) -> str:
     return _table(lines)
 
 
+def _targets(rows: Sequence[Row]) -> str:
+    """What is aimed at, with a note on each, and what no experiment measures yet."""
+    lines = [("Target", "Asked for", "Measured", "Verdict"), ("---",) * 4]
+    for row in rows:
+        said, _, asked, measured = claim_cells(row)
+        lines.append((said, asked, measured, _verdict(row)))
+    noted = "\n".join(f"- `{row.id}`: {row.note}" for row in rows if row.note)
+    parts = [_table(lines) if rows else "", f"{noted}\n" if noted else "", later()]
+    return "\n".join(part for part in parts if part) + "\n"
+
+
 def _table(lines: Sequence[Sequence[str]]) -> str:
     cells = [[cell.replace("|", "\\|") for cell in line] for line in lines]
     return "\n".join(f"| {' | '.join(line)} |" for line in cells) + "\n"
 
 
 def _verdict(row: Row) -> str:
-    return row.verdict if row.verdict == "reproduced" else f"**{row.verdict}**"
+    return row.verdict if kept(row) else f"**{row.verdict}**"
 
 
 def _failed(rows: Sequence[Row]) -> str:
-    lines = [
-        f"- `{row.id}`: {claim_cells(row)[0]}. {row.note}"
-        for row in rows
-        if row.verdict != "reproduced"
-    ]
+    lines = [f"- `{row.id}`: {claim_cells(row)[0]}. {row.note}" for row in rows if not kept(row)]
     return "\n".join(lines or ["None."]) + "\n"
 
 

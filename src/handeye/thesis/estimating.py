@@ -66,11 +66,11 @@ def parameter_error(estimated: PlanarPlant, actual: PlanarPlant) -> float:
     The base's x-axis is where alpha reads zero (table 3.1), and the range scale is taken to be 1;
     both choices concern no command.
     """
-    found, right = _settled(estimated), _settled(actual)
+    found, right = settled(estimated), settled(actual)
     return float(np.max(np.abs(found - right) / np.abs(right)))
 
 
-def _settled(plant: PlanarPlant) -> Array:
+def settled(plant: PlanarPlant) -> Array:
     """a, b, v_x, v_y, O_beta, O_gamma (6,) of the same robot with O_alpha = 0 and range scale 1."""
     turn, scale = float(plant.alpha.offset), float(plant.head.range_scale)
     c, s = np.cos(turn), np.sin(turn)

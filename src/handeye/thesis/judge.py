@@ -1,4 +1,4 @@
-"""Verdicts: what was measured against what was stated."""
+"""Verdicts: what was measured against what was stated or asked for."""
 
 import math
 from dataclasses import asdict, dataclass
@@ -14,7 +14,7 @@ from handeye.thesis.records import Records
 from handeye.thesis.shapes import SHAPES
 from handeye.thesis.units import scale_for, show
 
-Verdict = Literal["reproduced", "not reproduced", "not testable"]
+Verdict = Literal["reproduced", "not reproduced", "met", "not met", "not testable"]
 Interval = tuple[float, float]
 
 CONFIDENCE = 0.95
@@ -26,7 +26,7 @@ _ROUNDING = 1e-12
 class Row:
     """The outcome for one claim.
 
-    stated          the thesis's figure in `unit`, or None for an ordering or shape
+    stated          the thesis's or the target's figure in `unit`; None for an ordering or shape
     measured        mean over replicates; for an ordering or shape the share of them where it holds
     low, high       95 % interval of measured, or None with a single random replicate
     note            what a reader must know to judge the verdict
@@ -59,7 +59,7 @@ def judge(claim: Claim, records: Records, *, deterministic: bool = False) -> Row
         raise InvalidInput(f"no experiment measures {claim.id} yet")
     if claim.value is None:
         return _judge_shape(claim, records, deterministic)
-    values = records.values(claim.measure)
+    values = _worst(claim, records.values(claim.measure), records)
     notes = [claim.note, _others(claim, records)]
     if not np.all(np.isfinite(values)):
         lost = int(np.sum(~np.isfinite(values)))
@@ -69,7 +69,7 @@ def judge(claim: Claim, records: Records, *, deterministic: bool = False) -> Row
     interval = (mean, mean) if deterministic else t_interval(values)
     if interval is None:
         notes.append("One replicate: no interval.")
-    verdict = "reproduced" if agrees(claim, mean) else "not reproduced"
+    verdict = _verdict(claim, agrees(claim, mean))
     return _row(claim, mean, interval, len(values), verdict, notes)
 
 
@@ -123,8 +123,24 @@ def _judge_shape(claim: Claim, records: Records, deterministic: bool) -> Row:
         notes.append("One replicate: no interval.")
     else:
         interval = wilson_interval(held, n)
-    verdict = "reproduced" if finding.holds else "not reproduced"
+    verdict = _verdict(claim, finding.holds)
     return _row(claim, share, interval, n, verdict, notes)
+
+
+def _worst(claim: Claim, first: Array, records: Records) -> Array:
+    """Of all that is measured for a claim, values (replicates,) with the worst mean by its rule."""
+
+    def excess(values: Array) -> float:
+        away = float(values.mean()) - (claim.value or 0.0)
+        return {"at_most": away, "at_least": -away}.get(claim.rule, abs(away))
+
+    return max((first, *map(records.values, claim.worst_of)), key=excess)
+
+
+def _verdict(claim: Claim, kept: bool) -> Verdict:
+    if claim.is_target:
+        return "met" if kept else "not met"
+    return "reproduced" if kept else "not reproduced"
 
 
 def _row(

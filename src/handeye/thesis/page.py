@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 from handeye.reports.page import (
-    Badge,
     FigureBlock,
     Notes,
     Page,
@@ -12,9 +11,7 @@ from handeye.reports.page import (
     StatTiles,
     Table,
     Tile,
-    Tone,
 )
-from handeye.thesis.claims import claims_by_id
 from handeye.thesis.comparison import CAPTION, comparison_table
 from handeye.thesis.figures import FIGURES, TOPICS, Drawn, NotDrawn, drawable
 from handeye.thesis.judge import Row
@@ -22,26 +19,33 @@ from handeye.thesis.manifest import Manifest
 from handeye.thesis.records import Records
 from handeye.thesis.reproduce import Selection
 from handeye.thesis.storage import Stored, digest
-from handeye.thesis.wording import measured_text, sentence, stated_text, tally
+from handeye.thesis.tables import claims_table, notes_on, targets_blocks
+from handeye.thesis.wording import (
+    TARGETS,
+    apart,
+    kept,
+    sentence,
+    tally,
+)
 
-TITLE = "Robotic Hand-Eye Motor Learning (Ruoff 1993), chapter 3, reproduced"
-_TONES: dict[str, Tone] = {"reproduced": "good", "not reproduced": "bad"}
+TITLE = "Robotic Hand-Eye Motor Learning (Ruoff 1993), chapters 3 and 4, reproduced"
 
 
 def reproduction_page(
     rows: Sequence[Row], stored: Stored, chosen: Selection, *, date: str = ""
 ) -> Page:
-    """Headline, claims, figures, the comparison and how it was run, from records only."""
+    """Headline, claims, targets, figures, the comparison and how it was run, from records only."""
     records, manifest = stored
     figures = figures_of(chosen, manifest)
+    claims, targets = apart(rows)
+    whole = chosen.figures is None
     sections = [
         Section("", [_tiles(rows, manifest), *_caution(manifest)]),
-        Section("Claims", [_claims(rows), *_notes(rows)]) if rows else None,
+        Section("Claims", [claims_table(claims), *notes_on(claims)]) if claims else None,
+        Section(TARGETS, targets_blocks(targets, whole=whole)) if targets else None,
         *(_topic(name, topic, figures, records) for name, topic in TOPICS.items()),
-        _comparison(records)
-        if chosen.figures is None and "comparison" in manifest.experiments
-        else None,
-        _not_drawn() if chosen.figures is None else None,
+        _comparison(records) if whole and "comparison" in manifest.experiments else None,
+        _not_drawn() if whole else None,
     ]
     return Page(
         title=TITLE,
@@ -57,13 +61,21 @@ def reproduction_page(
 
 
 def headline(rows: Sequence[Row]) -> str:
-    """How many claims are reproduced."""
-    counts, n = tally(rows), len(rows)
-    if not n:
-        return "Figures of chapter 3, drawn again"
-    if counts["reproduced"] == n:
-        return "The claim is reproduced" if n == 1 else f"All {n} claims are reproduced"
-    return f"{counts['reproduced']} of {n} {'claim' if n == 1 else 'claims'} reproduced"
+    """How many claims are reproduced, and how many targets met."""
+    claims, targets = apart(rows)
+    parts = [
+        _how_many(claims, "claim", "reproduced") if claims else "",
+        _how_many(targets, "target", "met") if targets else "",
+    ]
+    said = ", ".join(part[0].lower() + part[1:] for part in parts if part)
+    return sentence(said) or "Figures of the thesis, drawn again"
+
+
+def _how_many(rows: Sequence[Row], noun: str, verdict: str) -> str:
+    n, good = len(rows), sum(map(kept, rows))
+    if good == n:
+        return f"The {noun} is {verdict}" if n == 1 else f"All {n} {noun}s are {verdict}"
+    return f"{good} of {n} {noun if n == 1 else noun + 's'} {verdict}"
 
 
 def figures_of(chosen: Selection, manifest: Manifest) -> list[Drawn]:
@@ -76,22 +88,23 @@ def figures_of(chosen: Selection, manifest: Manifest) -> list[Drawn]:
     return [figure for figure in possible if figure.number in named]
 
 
-def claim_cells(row: Row) -> tuple[str, str, str, str]:
-    """What is stated, where, the figure, and what was measured."""
-    claim = claims_by_id()[row.id]
-    return sentence(claim.says), claim.where, stated_text(row), measured_text(row)
-
-
 def _tiles(rows: Sequence[Row], manifest: Manifest) -> StatTiles:
+    claims, targets = apart(rows)
     counts = tally(rows)
     most = max((ran.replicates for ran in manifest.experiments.values()), default=1)
     tiles = [
-        Tile("Reproduced", str(counts["reproduced"]), note=f"of {len(rows)} claims", tone="good"),
+        Tile("Reproduced", str(counts["reproduced"]), note=f"of {len(claims)} claims", tone="good"),
         Tile("Not reproduced", str(counts["not reproduced"]), note="what was tried stands below"),
+    ]
+    if targets:
+        tiles.append(
+            Tile("Targets met", str(counts["met"]), note=f"of {len(targets)} beyond the thesis")
+        )
+    run = [
         Tile("Replicates", str(most), note="intervals are 95 % of their mean"),
         Tile("Experiments", str(len(manifest.experiments)), note=_effort(manifest)),
     ]
-    return StatTiles(tiles if rows else tiles[2:])
+    return StatTiles([*tiles, *run] if rows else run)
 
 
 def _effort(manifest: Manifest) -> str:
@@ -107,35 +120,6 @@ def _caution(manifest: Manifest) -> list[Prose]:
             "nothing."
         )
     ]
-
-
-def _claims(rows: Sequence[Row]) -> Table:
-    return Table(
-        columns=("Claim", "Thesis", "Stated", "Measured", "Verdict"),
-        rows=[
-            [*claim_cells(row), Badge(row.verdict, _TONES.get(row.verdict, "neutral"))]
-            for row in rows
-        ],
-        caption="± is the 95 % interval of the mean over replicates. Orderings and shapes hold or "
-        "do not, in each replicate.",
-        words=frozenset({0, 1}),
-    )
-
-
-def _notes(rows: Sequence[Row]) -> list[Notes]:
-    """What there is to know about claims, those not reproduced first."""
-    failed = [_note(row) for row in rows if row.note and row.verdict != "reproduced"]
-    others = [_note(row) for row in rows if row.note and row.verdict == "reproduced"]
-    notes = [
-        Notes("Not reproduced: what was found and tried", failed),
-        Notes("Notes on the claims that are reproduced", others, folded=True),
-    ]
-    return [note for note in notes if note.items]
-
-
-def _note(row: Row) -> str:
-    claim = claims_by_id()[row.id]
-    return f"{sentence(claim.says)} ({claim.where}; {row.id}). {row.note}"
 
 
 def _topic(
@@ -178,7 +162,7 @@ def _not_drawn() -> Section:
         if isinstance(figure, NotDrawn)
     ]
     return Section(
-        "Figures that show no result", [Notes("Drawings and diagrams of chapter 3", listed)]
+        "Figures that show no result", [Notes("Drawings and diagrams of the thesis", listed)]
     )
 
 

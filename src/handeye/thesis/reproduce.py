@@ -7,7 +7,7 @@ from fnmatch import fnmatchcase
 from typing import NamedTuple
 
 from handeye.errors import InvalidInput
-from handeye.thesis.claims import Claim, load_claims
+from handeye.thesis.claims import Claim, load_all
 from handeye.thesis.experiment import FULL, Effort
 from handeye.thesis.experiments import EXPERIMENTS
 from handeye.thesis.judge import Row, judge
@@ -34,13 +34,13 @@ def reproduce(
     *,
     effort: Effort = FULL,
 ) -> list[Row]:
-    """Run what the named claims and figures need, and judge the claims in the thesis's order.
+    """Run what names need; judge the claims in the thesis's order, then the targets.
 
     Args:
-        names: claims (`plant-uncorrected`), else beginnings of names (`preferred`) or patterns
-            (`*-noisy`), or figures (`3.22`, `figure-3.22`) for the claims that they show; by
-            default every claim that this version can measure.
-        replicates: repetitions with other random numbers, by default 20.
+        names: claims or targets (`plant-uncorrected`), else beginnings of names (`preferred`) or
+            patterns (`*-noisy`), or figures (`3.22`, `figure-3.22`) for the claims that they show;
+            by default every one that this version can measure.
+        replicates: repetitions with other random numbers, by default 20, and 10 for catching.
         jobs: processes, by default one for each core (see `run`).
         progress: told what is done.
         effort: how much of each experiment to run; verdicts mean something only with all of it.
@@ -111,7 +111,7 @@ def choose(names: Sequence[str] = (), stored: Stored | None = None) -> Selection
         found = [find_figure(number) for number in numbers.values()]
         shown = {claim for figure in found for claim in figure.shows}
         chosen = {claim.id for claim in claims} | shown
-        claims = [claim for claim in load_claims() if claim.id in chosen and claim.measure]
+        claims = [claim for claim in load_all() if claim.id in chosen and claim.measure]
         figures = tuple(figure.number for figure in found)
         needed |= {experiment for figure in found for experiment in figure.experiments}
         needed |= {experiment for claim in claims for experiment in claim.experiments}
@@ -125,12 +125,12 @@ def figure_number(name: str) -> str | None:
 
 
 def select(ids: Sequence[str] = ()) -> list[Claim]:
-    """The claims that names mean and this version can measure, in the order of the thesis.
+    """The claims and targets that names mean and this version can measure, in order.
 
     Raises:
         InvalidInput: as `reproduce`.
     """
-    claims = load_claims()
+    claims = load_all()
     chosen: set[str] = set()
     for name in ids or ("*",):
         found = [claim for claim in claims if claim.id == name]

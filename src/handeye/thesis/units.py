@@ -26,6 +26,8 @@ def scale_for(value: float, unit: str) -> Scale:
         return next((s for least, s in _LENGTHS if abs(value) >= least), Scale("m", 1.0))
     if unit.startswith("fraction"):
         return Scale("%", 1e2)
+    if unit == "ratio":
+        return Scale("", 1.0)
     return Scale(unit, 1.0)
 
 

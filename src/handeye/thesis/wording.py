@@ -2,15 +2,31 @@
 
 from collections.abc import Iterable
 
+from handeye.thesis.claims import Claim, claims_by_id
 from handeye.thesis.judge import SHARE, Row, Verdict
 from handeye.thesis.units import Scale, scale_for, show_interval, show_stated
 
-VERDICTS: tuple[Verdict, ...] = ("reproduced", "not reproduced", "not testable")
+VERDICTS: tuple[Verdict, ...] = (
+    "reproduced", "not reproduced", "met", "not met", "not testable",
+)  # fmt: skip
+TARGETS = "Better than the thesis"
+"""The name of what is aimed at beyond it."""
+
+
+def apart(rows: Iterable[Row]) -> tuple[list[Row], list[Row]]:
+    """The rows of the thesis's claims, and those of targets."""
+    given = list(rows)
+    targets = [row for row in given if claims_by_id()[row.id].is_target]
+    return [row for row in given if row not in targets], targets
 
 
 def stated_text(row: Row) -> str:
-    """What the thesis states, `-` for an ordering or shape."""
-    return "-" if row.stated is None else show_stated(row.stated, row.unit, _scale(row))
+    """What the thesis states, `-` for an ordering or shape; of a target, what is asked for."""
+    if row.stated is None:
+        return "-"
+    figure = show_stated(row.stated, row.unit, _scale(row))
+    claim = claims_by_id()[row.id]
+    return f"{_bound(claim)}{figure}" if claim.is_target else figure
 
 
 def measured_text(row: Row) -> str:
@@ -31,9 +47,24 @@ def tally(rows: Iterable[Row]) -> dict[Verdict, int]:
     return {verdict: given.count(verdict) for verdict in VERDICTS}
 
 
+def kept(row: Row) -> bool:
+    """Whether the verdict is a good one."""
+    return row.verdict in {"reproduced", "met"}
+
+
 def sentence(text: str) -> str:
     """The text with a capital at its beginning."""
     return text[:1].upper() + text[1:]
+
+
+def _bound(claim: Claim) -> str:
+    match claim.rule:
+        case "at_most":
+            return "at most "
+        case "at_least":
+            return "at least "
+        case _:
+            return f"within {100.0 * (claim.tol or 0.0):g} % of "
 
 
 def _scale(row: Row) -> Scale:

@@ -5,6 +5,18 @@ from typing import Any
 from handeye.thesis.experiment import Experiment
 from handeye.thesis.experiments.adaptation import ADAPTATION
 from handeye.thesis.experiments.allocation import ALLOCATION
+from handeye.thesis.experiments.catch_flights import CATCH_FLIGHTS
+from handeye.thesis.experiments.catch_improved import CATCH_CHANGES, CATCH_IMPROVED
+from handeye.thesis.experiments.catch_pid import CATCH_PID
+from handeye.thesis.experiments.catching import CATCHING
+from handeye.thesis.experiments.combined import (
+    COMBINED,
+    COMBINED_HEAT,
+    COMBINED_KNOWLEDGE,
+    COMBINED_MISFIT,
+    COMBINED_SCALE,
+    COMBINED_STEP,
+)
 from handeye.thesis.experiments.comparison import COMPARISON
 from handeye.thesis.experiments.distortions import DISTORTIONS
 from handeye.thesis.experiments.estimation import ESTIMATION
@@ -45,6 +57,17 @@ _ALL: tuple[Experiment[Any], ...] = (
     SCENARIOS,
     ESTIMATION,
     COMPARISON,
+    CATCH_FLIGHTS,
+    CATCHING,
+    CATCH_PID,
+    CATCH_IMPROVED,
+    CATCH_CHANGES,
+    COMBINED,
+    COMBINED_SCALE,
+    COMBINED_STEP,
+    COMBINED_HEAT,
+    COMBINED_KNOWLEDGE,
+    COMBINED_MISFIT,
 )
 
 EXPERIMENTS = {experiment.id: experiment for experiment in _ALL}

@@ -1,4 +1,4 @@
-"""Every figure of chapter 3: drawn from records, or listed with the reason why not.
+"""Every figure of chapters 3 and 4: drawn from records, or listed with the reason why not.
 
 Needs the extra "report"; importing `handeye.reports` says so where it is absent.
 """

@@ -4,6 +4,7 @@ from handeye.thesis.figures.figure import NotDrawn
 
 _LAYOUT = "a drawing of the robot; its geometry is `handeye.calibration.plant`"
 _BLOCKS = "a block diagram; the blocks are the calls of `handeye.calibration.calibrators`"
+_PID = "a block diagram; the controller is `handeye.catching.pid`"
 
 DRAWINGS = [
     NotDrawn("3.1", "Layout of arm, eye and base", _LAYOUT),
@@ -45,4 +46,17 @@ DRAWINGS = [
         "Adaptation with nonlinear estimation",
         "a block diagram; the estimator is `handeye.calibration.estimation`",
     ),
+    NotDrawn(
+        "4.2",
+        "Structure of the learning control system",
+        "a block diagram; the blocks are the modules of `handeye.catching`",
+    ),
+    NotDrawn("4.5", "What the mentor does", "a block diagram; its equations are `mentor.advise`"),
+    NotDrawn(
+        "4.6",
+        "Control while catching",
+        "a block diagram; the blocks are the steps of `handeye.catching.catcher`",
+    ),
+    NotDrawn("4.17", "Closed loop with a PID controller", _PID),
+    NotDrawn("4.18", "The same with the parameters of Internal Model Control", _PID),
 ]

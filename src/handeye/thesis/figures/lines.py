@@ -26,6 +26,8 @@ Style = Literal["-", "--", ":"]
 STATED = "stated in the thesis"
 _NOTHING = 1e-9
 _SMALLEST = 1e-9
+_FEW = 10.0
+"""Up to here an axis may have ticks between whole numbers."""
 _LENGTHS = ((1.0, "m"), (1e-2, "cm"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm"))
 
 
@@ -222,7 +224,8 @@ def _scale_x(axes: Axes, drawn: Sequence[Line], panel: Panel) -> None:
         axes.xaxis.set_minor_locator(NullLocator())
         return
     axes.set_xlim(min(start, 0.0), panel.ends or end)
-    thousands(axes)
+    if axes.get_xlim()[1] > _FEW:
+        thousands(axes)
 
 
 def _plain(value: float, _position: int | None = None) -> str:

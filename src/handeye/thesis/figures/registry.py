@@ -1,10 +1,15 @@
-"""Every figure of chapter 3, and how it is found."""
+"""Every figure of chapters 3 and 4 and those beyond the thesis (6.1 and on), by number."""
 
 from collections.abc import Iterable
 
 from handeye.errors import InvalidInput
 from handeye.thesis.figures.adaptation import ADAPTATION
 from handeye.thesis.figures.allocation import ALLOCATION
+from handeye.thesis.figures.catch_changes import WORTH
+from handeye.thesis.figures.catch_examples import EXAMPLES, RESPONSES
+from handeye.thesis.figures.catch_learning import CURVES, PREDICTION
+from handeye.thesis.figures.catch_world import PULSE, WORLD
+from handeye.thesis.figures.combined import BEYOND
 from handeye.thesis.figures.drawings import DRAWINGS
 from handeye.thesis.figures.estimation import ESTIMATION
 from handeye.thesis.figures.figure import Drawn, NotDrawn
@@ -24,12 +29,17 @@ TOPICS: dict[str, list[Drawn]] = {
     "A plant that changes": [*TRACKING, *FREQUENCY],
     "Sources of error": SCENARIOS,
     "Nonlinear estimation": ESTIMATION,
+    "Balls in flight": [*WORLD, *PREDICTION],
+    "Learning to catch": [*PULSE, *CURVES, *EXAMPLES, *RESPONSES],
+    "Beyond the thesis: the combined calibrator": BEYOND,
+    "Beyond the thesis: the improved catcher": WORTH,
 }
 """The figures that are drawn, by topic."""
 
 
-def _place(figure: Drawn | NotDrawn) -> int:
-    return int(figure.number.partition(".")[2])
+def _place(figure: Drawn | NotDrawn) -> tuple[int, int]:
+    chapter, _, number = figure.number.partition(".")
+    return int(chapter), int(number)
 
 
 FIGURES: dict[str, Drawn | NotDrawn] = {
@@ -38,7 +48,7 @@ FIGURES: dict[str, Drawn | NotDrawn] = {
         (*DRAWINGS, *(figure for topic in TOPICS.values() for figure in topic)), key=_place
     )
 }
-"""Every figure of chapter 3 by its number, in order."""
+"""Every figure by its number, in order."""
 
 
 def find_figure(number: str) -> Drawn:

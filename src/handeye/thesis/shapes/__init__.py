@@ -5,6 +5,8 @@ A predicate's docstring is the statement that it checks. Its limits come with th
 
 from handeye.thesis.shapes.adaptation import ADAPTATION
 from handeye.thesis.shapes.allocation import ALLOCATION
+from handeye.thesis.shapes.catch_pid import CATCH_PID
+from handeye.thesis.shapes.catching import CATCHING
 from handeye.thesis.shapes.drift import DRIFT
 from handeye.thesis.shapes.estimation import ESTIMATION
 from handeye.thesis.shapes.finding import Finding as Finding
@@ -23,5 +25,7 @@ SHAPES: dict[str, Shape] = {
     **WIDTH,
     **SCENARIOS,
     **ESTIMATION,
+    **CATCHING,
+    **CATCH_PID,
 }
 """The predicate of every ordering and shape that can be checked, by claim."""
