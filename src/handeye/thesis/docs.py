@@ -18,7 +18,7 @@ from handeye.thesis.wording import TARGETS, apart, kept, sentence
 
 SHOWN = (
     "3.10", "3.15", "3.21", "3.22", "3.31", "3.34", "3.37", "3.38", "3.40", "3.45", "3.51",
-    "4.1", "4.7", "4.11", "4.12", "4.14", "4.16",
+    "4.1", "4.7", "4.11", "4.12", "4.14", "4.16", "6.1", "6.3", "6.4", "6.5", "6.6",
 )  # fmt: skip
 """Figures that the page shows; all others are on the page that the command writes."""
 
