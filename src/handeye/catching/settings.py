@@ -168,11 +168,10 @@ IMPROVED = replace(
     excitation=0.15,
 )
 """Better than the thesis: samples are replayed in random order into wider neurons, so that they
-generalise between trajectories instead of along them; comparators can then be several times
-stricter; practice is gentler; pursuits are repeated; arms show at the start of a throw which they
-are. The mentor's advice is not taken: an arm that follows every new prediction until the ball comes
-needs none, and arrivals that are asked for earlier leave what was practised (measured: fewer
-catches)."""
+generalise between trajectories instead of along them; practice is gentler; pursuits are repeated;
+arms show at the start of a throw which they are. These buy the most (figure 6.6). Comparators can
+then be several times stricter, and unknown identities are tried. The mentor's advice is not taken:
+an arm that follows every new prediction until the ball comes needs none."""
 
 SMOOTH = replace(
     IMPROVED,

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Sequence
 from pathlib import Path
+from statistics import mode
 
 from handeye.io.files import replace_file
 from handeye.reports.style import color
@@ -78,17 +79,13 @@ def _how(manifest: Manifest) -> str:
 
 
 def _replicates(manifest: Manifest) -> str:
-    """How many there are, and of which experiments fewer; one where nothing is random."""
-    counts = {ran.replicates for ran in manifest.experiments.values() if not ran.deterministic}
+    """How many there are of most experiments, and of which more or fewer; one if none is random."""
+    counts = {n: ran.replicates for n, ran in manifest.experiments.items() if not ran.deterministic}
     if not counts:
         return "1 replicate"
-    most = max(counts)
-    fewer = [
-        f"{ran.replicates} of {name}"
-        for name, ran in manifest.experiments.items()
-        if ran.replicates < most and not ran.deterministic
-    ]
-    return f"{most} replicates" + (f" ({', '.join(fewer)})" if fewer else "")
+    usual = mode(counts.values())
+    others = [f"{count} of {name}" for name, count in counts.items() if count != usual]
+    return f"{usual} replicates" + (f" ({', '.join(others)})" if others else "")
 
 
 def _claims(rows: Sequence[Row]) -> str:
