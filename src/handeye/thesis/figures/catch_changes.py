@@ -6,7 +6,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from handeye.reports.style import WIDE, color, new_figure, styled
+from handeye.reports.style import WIDE, color, name_y, new_figure, styled
 from handeye.thesis.experiments.catch_improved import CHANGES
 from handeye.thesis.figures.figure import Drawn
 from handeye.thesis.figures.lines import band
@@ -36,7 +36,8 @@ def _changes(records: Records) -> Figure:
     axes.grid(axis="y", visible=False)
     axes.set_xlim(0.0, 112.0)
     axes.set_xticks([0, 20, 40, 60, 80, 100])
-    axes.set_xlabel("Balls caught [%]")
+    axes.set_xlabel("Fresh throws of both balls with both arms [%]")
+    name_y(axes, "Balls caught [%]")
     return figure
 
 
