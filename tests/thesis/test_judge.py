@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from handeye.errors import InvalidInput
+from handeye.intervals import wilson_interval
 from handeye.thesis.claims import Also, Claim, Rule
-from handeye.thesis.judge import SHARE, agrees, judge, t_interval, wilson_interval
+from handeye.thesis.judge import SHARE, agrees, judge, t_interval
 from handeye.thesis.records import Record, Records
 
 VALUED: tuple[Rule, ...] = ("within", "at_most", "at_least")

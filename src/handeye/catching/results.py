@@ -6,11 +6,11 @@ from math import sqrt
 from typing import Any
 
 import numpy as np
-from scipy.special import ndtri
 
 from handeye.arrays import Booleans
 from handeye.catching.play import Recording
 from handeye.errors import InvalidInput
+from handeye.intervals import wilson_interval
 
 IDENTITIES = ("light", "heavy")
 """What identities 0 and 1 are called, of balls and of arms."""
@@ -63,16 +63,8 @@ class Score:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Wilson's 95 % interval of the probability of a catch.
-
-        (k + z^2 / 2 +- z sqrt(k (n - k) / n + z^2 / 4)) / (n + z^2), z = 1.96, after k catches.
-        """
-        z = float(ndtri(0.975))
-        middle = self.caught + z * z / 2.0
-        half = z * sqrt(self.caught * (1.0 - self.share) + z * z / 4.0)
-        low, high = ((middle + side) / (self.n + z * z) for side in (-half, half))
-        # Rounding must not take a share of 0 or 1 out of its own interval.
-        return min(max(low, 0.0), self.share), max(min(high, 1.0), self.share)
+        """Wilson's 95 % interval of the probability of a catch."""
+        return wilson_interval(self.caught, self.n)
 
     def to_json(self) -> dict[str, Any]:
         """All numbers by name; lengths in metres."""

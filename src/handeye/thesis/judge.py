@@ -5,10 +5,11 @@ from dataclasses import asdict, dataclass
 from typing import Literal
 
 import numpy as np
-from scipy.special import ndtri, stdtrit
+from scipy.special import stdtrit
 
 from handeye.arrays import Array
 from handeye.errors import InvalidInput
+from handeye.intervals import CONFIDENCE, wilson_interval
 from handeye.thesis.claims import Claim
 from handeye.thesis.records import Records
 from handeye.thesis.shapes import SHAPES
@@ -17,7 +18,6 @@ from handeye.thesis.units import scale_for, show
 Verdict = Literal["reproduced", "not reproduced", "met", "not met", "not testable"]
 Interval = tuple[float, float]
 
-CONFIDENCE = 0.95
 SHARE = "fraction of replicates"
 _ROUNDING = 1e-12
 
@@ -99,16 +99,6 @@ def t_interval(values: Array) -> Interval | None:
     mean = float(values.mean())
     half = float(stdtrit(n - 1, 0.5 + CONFIDENCE / 2.0) * values.std(ddof=1) / math.sqrt(n))
     return mean - half, mean + half
-
-
-def wilson_interval(successes: int, n: int) -> Interval:
-    """Wilson's 95 % interval of a probability after `successes` in n >= 1 tries."""
-    z2 = float(ndtri(0.5 + CONFIDENCE / 2.0)) ** 2
-    middle = (successes + z2 / 2.0) / (n + z2)
-    half = math.sqrt(z2 * (successes * (n - successes) / n + z2 / 4.0)) / (n + z2)
-    # Rounding must not take a share of 0 or 1 out of its own interval.
-    share = successes / n
-    return min(max(middle - half, 0.0), share), max(min(middle + half, 1.0), share)
 
 
 def _judge_shape(claim: Claim, records: Records, deterministic: bool) -> Row:

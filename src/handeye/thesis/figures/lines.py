@@ -14,9 +14,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 from scipy.special import stdtrit
 
 from handeye.arrays import Array
+from handeye.intervals import CONFIDENCE
 from handeye.reports.figures.parts import Label, draw_marks, label_ends, scale_error_axis, thousands
 from handeye.reports.style import SERIES, color, length_unit, name_y
-from handeye.thesis.judge import CONFIDENCE
 from handeye.thesis.records import Records
 
 ORDERED = ("error1", "error2", "error3", "error4", "error5")
