@@ -120,6 +120,11 @@ class PlainNetwork:
                 V = respond(response, z, width(response, half)) * active
                 if (V * o).sum() > 0:
                     self.W = self.W + rule.rate / (V * o).sum() * np.outer(V, e)
+            case "FixedVirtualNeuron":
+                half = max(rule.half_distance, self.floor)
+                V = respond(response, z, width(response, half)) * active
+                if (V * o).sum() > 0:
+                    self.W = self.W + rule.rate * np.outer(V, e) / (V * o).sum()
             case "CMAC" if active.any():
                 self.W = self.W + rule.rate / o[active].sum() * np.outer(active, e)
             case "GradientDescent":

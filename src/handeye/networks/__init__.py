@@ -6,6 +6,9 @@ from handeye.networks.adaptation import NoAdaptation as NoAdaptation
 from handeye.networks.adaptation import VirtualNeuron as VirtualNeuron
 from handeye.networks.grids import fixed_grid as fixed_grid
 from handeye.networks.grids import variable_grid as variable_grid
+from handeye.networks.hardware import FixedPoint as FixedPoint
+from handeye.networks.hardware import FixedVirtualNeuron as FixedVirtualNeuron
+from handeye.networks.hardware import HardwareNetwork as HardwareNetwork
 from handeye.networks.inputs import InputSpace as InputSpace
 from handeye.networks.network import ResourceAllocatingNetwork as ResourceAllocatingNetwork
 from handeye.networks.outcomes import Learned as Learned

@@ -1,0 +1,246 @@
+"""A resource-allocating network that learns its weights by recursive least squares."""
+
+from copy import deepcopy
+from os import PathLike
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from handeye.arrays import Array, count, scalar, shaped
+from handeye.errors import InvalidInput
+from handeye.networks.inputs import InputSpace
+from handeye.networks.outcomes import Learned, LearnedMany
+from handeye.networks.recursive import storage
+from handeye.networks.recursive.evidence import relevance
+from handeye.networks.recursive.learner import Learner
+from handeye.networks.recursive.units import Settings
+from handeye.networks.units import moderate
+
+
+class RecursiveNetwork:
+    """Learns a mapping from R^d to R^m, one sample at a time, by second-order steps.
+
+    The output is `sum_j w_j o_j`, `o_j = exp(-|(x - c_j) / scales|^2 / 2)`. As in Platt's
+    resource-allocating network (1991) a neuron is added at an input that is far enough from all
+    centers and badly enough predicted; the weights follow by recursive least squares, in the place
+    of Platt's gradient steps, as Kadirkamanathan and Niranjan (1993) and Yingwei, Sundararajan and
+    Saratchandran (1997, MRAN) do, and neurons that no longer matter are pruned, as in MRAN and
+    GGAP-RBF (Huang, Saratchandran and Sundararajan 2005). Different from these:
+
+    - The prior of the weights is that of a Gaussian process with noise, so neighbours may overlap
+      as much as the data want, and a new neuron inherits information (Csato and Opper 2002).
+    - Covariances are those within blocks of neurons (a decoupled extended Kalman filter; exact with
+      one block), kept as information and its triangular factor, to which samples are only added.
+    - Samples are consolidated a few hundred at a time. Until then they take part through the
+      covariance of their errors, which is exact: every error and every prediction is that of the
+      recursion sample by sample. A new neuron starts from weight zero and answers from the next
+      consolidation on.
+    - The scales are those that make the first samples most probable; then these are learned anew.
+
+    A sample costs `n (b + q) / 2` multiplications for n neurons in blocks of b, q samples pending,
+    and consolidations about as much again.
+
+    Args:
+        n_inputs: d.
+        n_outputs: m. Far from all neurons outputs are zero: give targets of about zero mean.
+        inputs: the space of inputs; its scales, one standard deviation of a neuron's response, hold
+            for ever or until relevance_samples have been seen. By default sqrt(d) for each input.
+        capacity: most neurons ever, or None for no limit.
+        block: neurons in a block.
+        noise_ratio: variance of the noise over the prior variance of the function, until it is
+            estimated with the scales.
+        forgetting: weight of the past at each sample; 1 remembers everything, below it the last
+            1 / (1 - forgetting) samples count. The prior is never forgotten.
+        distance_threshold: theta_d, a new neuron is at least that far from others, in scales.
+        error_threshold: theta_e, a neuron is added only for a larger |error|, in output units.
+        prune_tolerance: when the capacity is reached, neurons are pruned that together change the
+            outputs at what was learned by no more than this root mean square, in output units.
+        relevance_samples: how many first samples scales and noise are estimated from, or None to
+            keep those given. Learning the last of them takes a second or so at 500.
+
+    Raises:
+        InvalidInput: a setting out of range, here or in any method an array of the wrong shape or
+            type or with values that are not finite; nothing has changed then.
+    """
+
+    def __init__(
+        self,
+        n_inputs: int,
+        n_outputs: int,
+        *,
+        inputs: InputSpace | None = None,
+        capacity: int | None = 1000,
+        block: int = 1000,
+        noise_ratio: float = 0.01,
+        forgetting: float = 1.0,
+        distance_threshold: float = 0.05,
+        error_threshold: float = 0.0,
+        prune_tolerance: float = 0.0,
+        relevance_samples: int | None = 500,
+    ) -> None:
+        self.n_inputs = count(n_inputs, "n_inputs")
+        self.n_outputs = count(n_outputs, "n_outputs")
+        if inputs is None:
+            inputs = InputSpace.scaled(np.full(self.n_inputs, np.sqrt(self.n_inputs)))
+        if inputs.n_inputs != self.n_inputs:
+            raise InvalidInput(f"inputs describes {inputs.n_inputs} inputs, not {n_inputs}")
+        self.inputs = inputs
+        self.capacity = None if capacity is None else count(capacity, "capacity")
+        first = 0 if relevance_samples is None else relevance_samples
+        self.settings = Settings(
+            block=count(block, "block"),
+            noise_ratio=scalar(noise_ratio, "noise_ratio", least=1e-8),
+            forgetting=scalar(forgetting, "forgetting", least=0.5),
+            distance_threshold=scalar(distance_threshold, "distance_threshold", least=0.0),
+            error_threshold=scalar(error_threshold, "error_threshold", least=0.0),
+            prune_tolerance=scalar(prune_tolerance, "prune_tolerance", least=0.0),
+            relevance_samples=count(first, "relevance_samples", least=0),
+        )
+        if self.settings.forgetting > 1.0:
+            raise InvalidInput(f"forgetting must be at most 1, got {forgetting}")
+        if 0 < self.settings.relevance_samples < 2 * (self.n_inputs + 2):
+            raise InvalidInput(
+                f"relevance_samples must be at least {2 * (self.n_inputs + 2)} to say anything "
+                f"about {self.n_inputs} scales, or None; got {relevance_samples}"
+            )
+        self._learner = Learner(self.n_inputs, self.n_outputs, self.capacity, self.settings)
+        self._scales = np.array(self.inputs.scales)
+        self._trials = 0
+        self._first = np.empty((0, self.n_inputs + self.n_outputs))
+
+    @property
+    def n_neurons(self) -> int:
+        """Neurons allocated so far, with those that answer only from the next consolidation on."""
+        return self._learner.n_neurons + self._learner.waiting
+
+    @property
+    def trials(self) -> int:
+        """Samples learned so far."""
+        return self._trials
+
+    @property
+    def scales(self) -> Array:
+        """One standard deviation of a neuron's response along each input, (d,); a copy."""
+        return self._scales.copy()
+
+    @property
+    def centers(self) -> Array:
+        """Where the neurons that answer are, (N, d) in input units; a copy."""
+        return self._learner.centers() * self._scales
+
+    @property
+    def weights(self) -> Array:
+        """Their output weights, (N, m); a copy."""
+        return self._learner.weights()
+
+    @property
+    def noise(self) -> Array:
+        """Estimated standard deviation of what no network could predict, (m,); a copy."""
+        return np.sqrt(self._learner.noise)
+
+    def predict(self, x: ArrayLike) -> Array:
+        """Output (m,) at one input (d,); zero where no neuron answers."""
+        return self._learner.predict(self._scaled(shaped(x, (self.n_inputs,), "x")[np.newaxis]))[0]
+
+    def predict_many(self, x: ArrayLike) -> Array:
+        """Outputs (N, m) at inputs (N, d)."""
+        return self._learner.predict(self._scaled(shaped(x, (None, self.n_inputs), "x")))
+
+    def variance(self, x: ArrayLike) -> Array:
+        """Variance of target minus output (m,) at one input (d,), the noise included."""
+        return self.variance_many(shaped(x, (self.n_inputs,), "x")[np.newaxis])[0]
+
+    def variance_many(self, x: ArrayLike) -> Array:
+        """The same at inputs (N, d), (N, m).
+
+        `noise o^T A^-1 o + max(noise, signal (1 - k^T K^-1 k))`: uncertain weights, and noise or
+        what the neurons cannot represent there (the deterministic training conditional of
+        Quinonero-Candela and Rasmussen 2005), whichever is more, since the estimate of the noise
+        holds what they usually cannot. Far from all neurons it is the prior's.
+        """
+        return self._learner.variance(self._scaled(shaped(x, (None, self.n_inputs), "x")))
+
+    def learn(self, x: ArrayLike, target: ArrayLike) -> Learned:
+        """Learn one sample, x (d,) and target (m,)."""
+        one = shaped(x, (self.n_inputs,), "x")[np.newaxis]
+        known = shaped(target, (self.n_outputs,), "target")[np.newaxis]
+        error, allocated = self._learn(one, known)
+        return Learned(error[0], bool(allocated[0]))
+
+    def learn_many(self, x: ArrayLike, target: ArrayLike) -> LearnedMany:
+        """Learn N samples in order, x (N, d) and target (N, m); the same result as one by one."""
+        inputs = shaped(x, (None, self.n_inputs), "x")
+        targets = shaped(target, (None, self.n_outputs), "target")
+        if len(inputs) != len(targets):
+            raise InvalidInput(f"x has {len(inputs)} samples but target has {len(targets)}")
+        return self._learn(inputs, targets)
+
+    def prune(self, tolerance: float) -> int:
+        """Remove neurons that matter least; returns how many.
+
+        The root mean square of the change of the outputs at what was learned, weighted by what is
+        not forgotten, is at most the tolerance, in output units (an estimate where neurons were
+        added later, and with more than one block).
+        """
+        return self._learner.prune(scalar(tolerance, "tolerance", least=0.0))
+
+    def copy(self) -> Self:
+        """An independent network in the same state."""
+        return deepcopy(self)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write everything to one safetensors file, replacing an old one only once complete."""
+        storage.save(self, path)
+
+    @staticmethod
+    def load(path: str | PathLike[str]) -> "RecursiveNetwork":
+        """The network that `save` wrote; FileFormatError for any other file."""
+        return storage.load(path)
+
+    def __repr__(self) -> str:
+        """Shape and state."""
+        limit = "unlimited" if self.capacity is None else f"at most {self.capacity}"
+        return (
+            f"RecursiveNetwork({self.n_inputs} inputs, {self.n_outputs} outputs, "
+            f"{self.n_neurons} neurons of {limit}, {self._trials} trials, {self.settings})"
+        )
+
+    def _scaled(self, inputs: Array) -> Array:
+        with np.errstate(over="ignore"):
+            return moderate(inputs / self._scales, "inputs over scales")
+
+    def _learn(self, inputs: Array, targets: Array) -> LearnedMany:
+        self._scaled(inputs)
+        moderate(targets, "target")
+        first = self.settings.relevance_samples
+        until = max(0, min(len(inputs), first - self._trials))
+        parts: list[LearnedMany] = []
+        for rows in (slice(0, until), slice(until, None)):
+            parts.append(self._learner.learn(self._scaled(inputs[rows]), targets[rows]))
+            self._trials += len(inputs[rows])
+            if rows.stop:
+                new = np.concatenate([inputs[rows], targets[rows]], axis=1)
+                self._first = np.concatenate([self._first, new])
+                if self._trials == first:
+                    self._begin_again()
+        return LearnedMany(*(np.concatenate(both) for both in zip(*parts, strict=True)))
+
+    def _take_over(self, learner: Learner, scales: Array, trials: int, first: Array) -> None:
+        """Go on from a stored state."""
+        self._learner, self._scales, self._trials, self._first = learner, scales, trials, first
+
+    def _begin_again(self) -> None:
+        """Estimate scales and noise from the first samples, and learn these anew."""
+        inputs, targets = np.split(self._first, [self.n_inputs], axis=1)
+        found = relevance(inputs, targets)
+        self._scales = found.scales
+        self._learner = Learner(
+            self.n_inputs,
+            self.n_outputs,
+            self.capacity,
+            self.settings._replace(noise_ratio=found.noise_ratio),
+        )
+        self._learner.learn(self._scaled(inputs), targets)
+        self._learner.noise, self._learner.signal = found.noise, found.signal
+        self._first = self._first[:0]
