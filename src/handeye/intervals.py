@@ -1,8 +1,10 @@
-"""How far a measured share may be from the true one."""
+"""How far a measured share or mean may be from the true one."""
 
 import math
+from collections.abc import Sequence
+from statistics import stdev
 
-from scipy.special import ndtri
+from scipy.special import ndtri, stdtrit
 
 CONFIDENCE = 0.95
 
@@ -18,3 +20,15 @@ def wilson_interval(successes: int, n: int) -> tuple[float, float]:
     # Rounding must not take a share of 0 or 1 out of its own interval.
     share = successes / n
     return min(max(middle - half, 0.0), share), max(min(middle + half, 1.0), share)
+
+
+def mean_interval(mean: float, parts: Sequence[float]) -> tuple[float, float]:
+    """95 % interval of the mean of a quantity that is never negative.
+
+    mean -+ t s / sqrt(B) with Student's t of B - 1 degrees of freedom, from the means of B >= 2
+    parts of about the same size, of which only whole parts are independent of each other, and
+    their sample standard deviation s.
+    """
+    t = float(stdtrit(len(parts) - 1, 0.5 + CONFIDENCE / 2.0))
+    half = t * stdev(parts) / math.sqrt(len(parts))
+    return max(mean - half, 0.0), mean + half

@@ -3,11 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from handeye.arrays import Array, shaped
 from handeye.calibration.models import Correct
 from handeye.calibration.placement import Placement
 from handeye.errors import InvalidInput
+from handeye.geometry import matrix_from_wxyz
 from handeye.networks.inputs import InputSpace
 from handeye.observations import PointObservation, PointTarget
 from handeye.robots.arm import Arm
@@ -28,6 +30,8 @@ class PlacedArm:
 
     low, high   the joint angles in which the robot works, (n,) [rad]: the box of the inputs
     resolution  errors below this are not worth learning [m]
+    turn_std    standard deviation of measured orientations [rad]; None where none are measured
+    noise       standard deviation of measured positions that state none [m]
     """
 
     arm: Arm
@@ -35,6 +39,8 @@ class PlacedArm:
     low: Array
     high: Array
     resolution: float = 1e-4
+    turn_std: float | None = None
+    noise: float = 0.0
 
     @property
     def space(self) -> InputSpace:
@@ -57,6 +63,18 @@ class PlacedArm:
     def displacement(self, observations: PointObservation, errors: Array) -> Array:  # noqa: ARG002
         """The errors themselves (N, 3)."""
         return errors
+
+    def turn_errors(self, observations: PointObservation) -> Array | None:
+        """Rotation vectors (N, 3) from predicted to measured orientations, in the marker's frame.
+
+        None where none was measured.
+        """
+        if observations.orientation is None:
+            return None
+        measured = Rotation.from_matrix(matrix_from_wxyz(observations.orientation))
+        base, marker = self.placement.T_sensor_base, self.placement.T_flange_marker
+        predicted = base @ self.arm.poses(observations.joints) @ marker
+        return (Rotation.from_matrix(predicted[:, :3, :3]).inv() * measured).as_rotvec()
 
     def command(self, targets: PointTarget, correct: Correct) -> Array:
         """Joints (N, n), near each target's posture, whose corrected prediction is the target.

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from handeye.arrays import Array, shaped
-from handeye.calibration.placement_problem import PlacementProblem
+from handeye.calibration.placement_problem import MEDIAN_LENGTH, PlacementProblem
 from handeye.calibration.placement_start import Start, base_turn, starts
 from handeye.calibration.placement_status import status, undetermined
 from handeye.geometry import make_pose, matrix_from_wxyz
@@ -18,6 +18,9 @@ _ROWS_TO_CHOOSE_START = 2000
 _REWEIGHTINGS = 5
 # Orientations farther from their mean than this multiple of the median take no part in it.
 _OUTLIER = 3.0
+# Orientations that agree no better than this with the arm are not those of the marker; none are
+# better than the least [rad].
+_LARGE_TURN, _LEAST_TURN = 0.1, 1e-5
 
 
 @dataclass(frozen=True)
@@ -59,6 +62,26 @@ class PlacementFit:
     condition: float
     undetermined: tuple[str, ...]
     status: str
+
+
+def sensor_of(fit: PlacementFit, seen: PointObservation) -> tuple[float | None, float]:
+    """How accurate the sensor is at worst: of orientations [rad], of positions [m].
+
+    Standard deviations of what the nominal arm leaves unexplained, which is the sensor's noise and
+    the arm's own errors together. None for orientations that are not measured, or that are about
+    something else; 0 for positions that state their own.
+    """
+    turn, noise = None, 0.0
+    if fit.orientation_residuals is not None:
+        turn = max(_robust_std(fit.orientation_residuals), _LEAST_TURN)
+    if seen.position_std is None:
+        noise = _robust_std(fit.residuals)
+    return (None if turn is None or turn > _LARGE_TURN else turn), noise
+
+
+def _robust_std(vectors: Array) -> float:
+    """Of the components of N normally distributed vectors (N, 3), whatever some of them are."""
+    return float(np.median(np.linalg.norm(vectors, axis=1))) / MEDIAN_LENGTH
 
 
 def estimate_placement(

@@ -20,8 +20,8 @@ LEAST_STD = 1e-6
 _PLAY = 0.2
 # A motion smaller than this share of the arm's reach is none.
 _LEAST_MOTION = 1e-3
-# Median length of a normally distributed 3-vector whose components have standard deviation 1.
-_MEDIAN_LENGTH = 1.538
+MEDIAN_LENGTH = 1.538
+"""Of a normally distributed 3-vector whose components have standard deviation 1."""
 
 
 @dataclass(frozen=True)
@@ -88,9 +88,9 @@ class PlacementProblem:
         measured = np.sqrt(np.mean(self.std**2, axis=1))
 
         def surplus(s: float) -> float:
-            return float(np.median(lengths / np.hypot(measured, s))) - _MEDIAN_LENGTH
+            return float(np.median(lengths / np.hypot(measured, s))) - MEDIAN_LENGTH
 
-        most = max(float(np.median(lengths)) / _MEDIAN_LENGTH, LEAST_STD)
+        most = max(float(np.median(lengths)) / MEDIAN_LENGTH, LEAST_STD)
         own = LEAST_STD if surplus(LEAST_STD) <= 0.0 else most
         if own > LEAST_STD and surplus(most) < 0.0:
             own = float(brentq(surplus, LEAST_STD, most, rtol=1e-3))

@@ -5,6 +5,7 @@ from os import PathLike
 from typing import Any
 
 from handeye.arrays import Array
+from handeye.calibration.arm import ArmEstimator, ArmSheet
 from handeye.calibration.calibrators import NetworkCorrection, Nominal
 from handeye.calibration.combined import Combined
 from handeye.calibration.combined.storage import combined_from_arrays, combined_to_arrays
@@ -43,7 +44,9 @@ def save_model(path: str | PathLike[str], calibrator: AnyCalibrator, observed: i
     Raises:
         InvalidInput: a calibrator or a model of another kind, or an arm that is not from a URDF.
     """
-    if not isinstance(calibrator, Nominal | NetworkCorrection | ParameterEstimator | Combined):
+    if not isinstance(
+        calibrator, Nominal | NetworkCorrection | ParameterEstimator | ArmEstimator | Combined
+    ):
         raise InvalidInput(f"a {type(calibrator).__name__} cannot be stored yet")
     arrays, header = _model_parts(calibrator.model)
     header |= {"calibrator": type(calibrator).__name__, "observed": observed}
@@ -53,6 +56,9 @@ def save_model(path: str | PathLike[str], calibrator: AnyCalibrator, observed: i
     if isinstance(calibrator, ParameterEstimator):
         learned, header["estimator"] = estimator_to_arrays(calibrator)
         arrays |= {f"estimator.{name}": array for name, array in learned.items()}
+    if isinstance(calibrator, ArmEstimator):
+        arrays |= {"fit.seen": calibrator.seen, "fit.x": calibrator.x}
+        header["sheet"] = asdict(calibrator.sheet)
     if isinstance(calibrator, Combined):
         learned, header["combined"] = combined_to_arrays(calibrator)
         arrays |= {f"combined.{name}": array for name, array in learned.items()}
@@ -84,6 +90,10 @@ def _calibrator(model: Any, arrays: dict[str, Array], header: Header) -> AnyCali
             return Nominal(model)
         case "ParameterEstimator":
             return estimator_from_arrays(model, _part("estimator.", arrays), header["estimator"])
+        case "ArmEstimator":
+            fitted = ArmEstimator(model, ArmSheet.restored(header["sheet"]))
+            fitted.restore(arrays["fit.seen"], arrays["fit.x"])
+            return fitted
         case "Combined":
             return combined_from_arrays(model, _part("combined.", arrays), header["combined"])
         case "NetworkCorrection":
@@ -126,6 +136,7 @@ def _model_parts(model: Any) -> Parts:
                 "low": model.low,
                 "high": model.high,
             }
+            header |= {"turn_std": model.turn_std, "noise": model.noise}
         case _:
             raise InvalidInput(f"a model of {model!r} cannot be stored")
     return arrays, {"model": type(model).__name__, "resolution": model.resolution, **header}
@@ -141,7 +152,11 @@ def _model_from(arrays: dict[str, Array], header: Header) -> Any:
         case "PlacedArm":
             arm = UrdfArm.from_text(header["urdf"], header["tip"], header["name"])
             placement = Placement(arrays["T_sensor_base"], arrays["T_flange_marker"])
-            return PlacedArm(arm, placement, arrays["low"], arrays["high"], resolution)
+            # Files of before arms were learned with orientations know neither.
+            return PlacedArm(
+                arm, placement, arrays["low"], arrays["high"], resolution,
+                header.get("turn_std"), header.get("noise", 0.0),
+            )  # fmt: skip
         case other:
             raise FileFormatError(f"it holds an unknown model, {other!r}")
 

@@ -2,7 +2,7 @@
 
 One row per observation. The header (order does not matter, other columns are ignored):
 
-    time_s                             increasing from row to row
+    time_s                             increasing from row to row, or rows in any order at all
     <joint name>_rad                   one column per joint (of a sliding joint: its travel in m)
 
 and for a marker on the hand located by a tracker or camera, in the sensor's frame
@@ -37,12 +37,14 @@ __all__ = ["BadRow", "Log", "LogReading", "read_log", "write_log"]
 
 
 def read_log(path: Path | str, *, skip_bad: bool = False) -> LogReading:
-    """Read and check a log.
+    """Read and check a log, whose rows come in the order of time.
 
-    Rejected are rows with empty or non-numeric cells, too few or too many cells, time stamps
-    that repeat or go back, quaternions whose length is off 1 by more than 0.01, and ranges or
-    standard deviations that are not positive. With `skip_bad` the other rows are used. A recording
-    (.bag, .mcap, .db3 or the folder of a ROS 2 bag) is read with the defaults of `bags.read_bag`.
+    Rows that do not stand in this order are sorted; where it is but a few that do not, their clock
+    is thought to be wrong. Rejected are rows with empty or non-numeric cells, too few or too many
+    cells, time stamps that repeat or go back, quaternions whose length is off 1 by more than 0.01,
+    and ranges or standard deviations that are not positive. With `skip_bad` the other rows are
+    used. A recording (.bag, .mcap, .db3 or the folder of a ROS 2 bag) is read with the defaults of
+    `bags.read_bag`.
 
     Raises:
         LogError: for a file that is no log, missing columns, a column in the wrong unit (angles
@@ -56,7 +58,8 @@ def read_log(path: Path | str, *, skip_bad: bool = False) -> LogReading:
     joints, others = col.required(table.file, found)
     needed = (*joints, *others)
     ignored = [name for name in found if name not in needed]
-    return checked_log(table, table.numbers(needed), joints, ignored, skip_bad=skip_bad)
+    reading = checked_log(table, table.numbers(needed), joints, ignored, skip_bad=skip_bad)
+    return LogReading(reading.log.in_time_order(), reading.rejected)
 
 
 def write_log(path: Path | str, log: Log) -> None:

@@ -1,8 +1,8 @@
 """What a log is once it is read, and what is wrong with the rows that were left out."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, fields, replace
+from typing import Any, Literal
 
 import numpy as np
 
@@ -50,6 +50,17 @@ class Log:
 
     def __len__(self) -> int:
         return len(self.rows)
+
+    def in_time_order(self) -> "Log":
+        """The log with its rows sorted by time; of equal times, by what was observed.
+
+        Logs of the same observations in any order become the same, but for the numbers of rows.
+        """
+        seen: Any = self.observations
+        values = [getattr(seen, field.name) for field in fields(seen)]
+        columns = [v.reshape(len(v), -1) for v in values if v is not None]
+        order = np.lexsort(np.hstack(columns).T[::-1])
+        return replace(self, observations=seen[order], rows=self.rows[order])
 
     def only(self, good: Booleans) -> "Log":
         """The log with the rows where `good` (N,) is true."""

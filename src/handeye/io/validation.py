@@ -20,6 +20,9 @@ LARGEST_NORM_ERROR = 1e-2
 _ROUNDING = 1e-12
 # A unit is wrong in a whole column; more seldom than this it is a glitch of single rows.
 _GLITCHES = 0.05
+# Time goes back this often only where rows do not stand in the order of time: shuffled, it does at
+# every second row. More seldom, or once or twice in a short log, it is the clock.
+_SHUFFLED, _TWICE = 0.25, 2
 
 
 def checked_log(
@@ -123,9 +126,15 @@ def _check_rows(table: Table, values: Mapping[str, Array]) -> None:
 
 
 def _check_time(table: Table, time: Array) -> None:
-    """Reject the fewest rows whose removal leaves time stamps that increase."""
+    """Reject the fewest rows whose removal leaves time stamps that increase.
+
+    Rows that do not stand in the order of time at all are judged in that order.
+    """
     known = np.isfinite(time) & ~np.isin(table.rows, list(table.bad))
     rows, stamps = table.rows[known], time[known]
+    if np.count_nonzero(np.diff(stamps) < 0.0) > max(_SHUFFLED * len(stamps), _TWICE):
+        order = np.argsort(stamps, kind="stable")
+        rows, stamps = rows[order], stamps[order]
     kept = increasing(stamps)
     if len(stamps) - len(kept) > len(stamps) / 2:
         raise LogError(

@@ -1,6 +1,6 @@
 """Arms described by URDF files, through pinocchio."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from difflib import get_close_matches
 from functools import cache
 from importlib import import_module
@@ -14,11 +14,8 @@ from numpy.typing import ArrayLike
 
 from handeye.arrays import Array, shaped
 from handeye.errors import FileFormatError, InvalidInput, MissingExtra
-
-# Names that robot makers give to the mounting face, most telling first. Any link fixed to the last
-# moving one serves as well, since the marker's place on it is estimated; but `tool0` (so called by
-# ROS-Industrial) is also the frame in which the robot's own controller reports its pose.
-_FLANGE_NAMES = ("flange", "tool0", "ee_link", "end_effector", "link_eef")
+from handeye.robots.stages import Stages
+from handeye.robots.tips import default_tip
 
 
 class UrdfArm:
@@ -38,8 +35,10 @@ class UrdfArm:
         self.urdf = urdf
         self._model = model
         self._data: Any = model.createData()
-        self._tip = _frame(model, tip)
+        # A joint may have the same name.
+        self._tip = int(model.getFrameId(tip, _pinocchio().FrameType.BODY))
         chain = list(model.supports[model.frames[self._tip].parentJoint])[1:]
+        self._chain: list[int] = chain
         self.joint_names = tuple(str(model.names[i]) for i in chain)
         joints = [model.joints[i] for i in chain]
         for joint, joint_name in zip(joints, self.joint_names, strict=True):
@@ -58,10 +57,10 @@ class UrdfArm:
         self.lower: Array = np.where(unlimited, -np.inf, low)
         self.upper: Array = np.where(unlimited, np.inf, high)
         # All links stretched in one line, sliding joints far out: nothing is farther away.
-        ways = [model.jointPlacements[i] for i in chain] + [model.frames[self._tip].placement]
-        slides = np.array(["JointModelP" in joint.shortname() for joint in joints], dtype=bool)
-        travel = np.maximum(np.abs(self.lower), np.abs(self.upper))[slides]
-        self.reach = float(sum(np.linalg.norm(w.translation) for w in ways) + travel.sum())
+        stages = self.stages()
+        travel = np.maximum(np.abs(self.lower), np.abs(self.upper))[stages.slides]
+        lengths = np.linalg.norm(stages.placements[:, :3, 3], axis=1)
+        self.reach = float(lengths.sum() + travel.sum())
 
     @classmethod
     def from_file(cls, path: Path | str, tip: str | None = None) -> Self:
@@ -114,13 +113,14 @@ class UrdfArm:
             raise FileFormatError(
                 f"is not a usable URDF file ({error}); expand a xacro file with `xacro` first"
             ) from error
-        links = [str(f.name) for f in model.frames if f.type == pin.FrameType.BODY]
+        bodies = [frame for frame in model.frames if frame.type == pin.FrameType.BODY]
+        joints = {str(body.name): int(body.parentJoint) for body in bodies}
         if tip is None:
-            tip = _default_tip(model, links, name)
-        elif tip not in links:
-            near = get_close_matches(tip, links, n=3, cutoff=0.5) or links
+            tip = default_tip([list(way) for way in model.supports], joints, name)
+        elif tip not in joints:
+            near = get_close_matches(tip, joints, n=3, cutoff=0.5) or joints
             raise InvalidInput(f"{name} has no link {tip!r}: choose one of {', '.join(near)}")
-        elif model.frames[_frame(model, tip)].parentJoint == 0:
+        elif joints[tip] == 0:
             raise InvalidInput(
                 f"{name}: no joint moves the link {tip!r}: choose one beyond a joint"
             )
@@ -148,6 +148,23 @@ class UrdfArm:
             jacobian[:] = pin.computeFrameJacobian(
                 model, data, configuration, self._tip, pin.LOCAL_WORLD_ALIGNED
             )[:, self._speed_at]
+        return out
+
+    def stages(self) -> Stages:
+        """The constants of the chain from root to tip."""
+        return Stages.of(self._model, self._chain, self._model.frames[self._tip])
+
+    def loads(self, joints: ArrayLike) -> Array:
+        """Torque of gravity about (force along) each joint's axis, (N, n) [Nm] or [N].
+
+        From the masses in the file, with gravity along -z of the base; zero where it has none.
+        Raises InvalidInput for joints of another shape than (N, n).
+        """
+        pin, model, data = _pinocchio(), self._model, self._data
+        configurations = self._configurations(joints)
+        out = np.empty((len(configurations), len(self.joint_names)))
+        for load, configuration in zip(out, configurations, strict=True):
+            load[:] = -pin.computeGeneralizedGravity(model, data, configuration)[self._speed_at]
         return out
 
     def _configurations(self, joints: ArrayLike) -> Array:
@@ -196,36 +213,6 @@ def shipped_robots() -> dict[str, Path]:
 
 def _package(path: Path) -> str:
     return path.parents[1].name.removesuffix("_description")
-
-
-def _default_tip(model: Any, links: Sequence[str], name: str) -> str:
-    """The end of the longest chain of moving joints, if there is but one."""
-    ways: list[list[int]] = [list(way) for way in model.supports]
-    longest = max(len(way) for way in ways)
-    if longest == 1:
-        raise InvalidInput(f"{name} has no moving joint")
-    ends = [joint for joint, way in enumerate(ways) if len(way) == longest]
-    behind = {
-        joint: [link for link in links if model.frames[_frame(model, link)].parentJoint == joint]
-        for joint in range(len(ways))
-    }
-    if len(ends) == 1:
-        fixed = behind[ends[0]]
-        usual = [link for known in _FLANGE_NAMES for link in fixed if link.endswith(known)]
-        return (usual or fixed)[0]
-    tips = [behind[end][0] for end in ends]
-    fork = max(joint for joint in ways[ends[0]] if all(joint in ways[end] for end in ends))
-    before = f"\n  before they part: {', '.join(behind[fork])}" if fork else ""
-    raise InvalidInput(
-        f"{name}: {len(tips)} chains of {longest - 1} moving joints are equally long, so its tip "
-        "is not clear; say with --tip LINK (in Python: tip=) which link carries the marker:\n"
-        f"  ends: {', '.join(tips)}{before}"
-    )
-
-
-def _frame(model: Any, link: str) -> int:
-    """Pinocchio's number of a link's frame (a joint may have the same name)."""
-    return int(model.getFrameId(link, _pinocchio().FrameType.BODY))
 
 
 @cache

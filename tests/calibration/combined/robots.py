@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 
 from handeye.calibration.combined import Combined, DataSheet
-from handeye.calibration.combined.planar import planar_chain
+from handeye.calibration.combined.planar.chain import planar_chain
 from handeye.calibration.models import PlanarModel
 from handeye.calibration.session import WorldStreams, position_errors
 from handeye.calibration.world import PlanarWorld

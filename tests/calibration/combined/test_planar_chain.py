@@ -7,15 +7,15 @@ from hypothesis import strategies as st
 from tests.calibration.combined.robots import CHAIN, MODEL, stream
 
 from handeye.calibration.combined import DataSheet, Informed, floor
-from handeye.calibration.combined.chain import Chain, Group
-from handeye.calibration.combined.curves import curve_std, legendre, sine_slope, sine_terms
-from handeye.calibration.combined.planar import seen_rows, target_rows
-from handeye.calibration.combined.planar_kernels import (
+from handeye.calibration.combined.planar.chain import seen_rows, target_rows
+from handeye.calibration.combined.planar.curves import curve_std, legendre, sine_slope, sine_terms
+from handeye.calibration.combined.planar.kernels import (
     planar_command,
     planar_reach,
     planar_residuals,
 )
-from handeye.calibration.combined.suggesting import expected_sightings
+from handeye.calibration.combined.planar.suggesting import expected_sightings
+from handeye.calibration.engine.chain import Chain, Group
 from handeye.calibration.session import WorldStreams, position_errors
 from handeye.calibration.world import PlanarWorld
 from handeye.errors import InvalidInput

@@ -1,36 +1,27 @@
 """The calibrator to use by default: the whole chain, with a learned function for each stage."""
 
+from typing import Any
+
 import numpy as np
 
-from handeye.arrays import Array
+from handeye.arrays import Array, count
 from handeye.calibration.calibrator import Feedback
-from handeye.calibration.combined.acting import act_many, judge, missed
-from handeye.calibration.combined.design import (
-    Suggestion,
-    hand_slopes,
-    without_gauges,
-)
-from handeye.calibration.combined.engine import Engine
-from handeye.calibration.combined.events import Event, Kind
 from handeye.calibration.combined.guard import Comparison
-from handeye.calibration.combined.knowledge import RobotKnowledge, health, robot_knowledge
 from handeye.calibration.combined.leftover import Leftover
-from handeye.calibration.combined.planar import planar_chain, seen_rows, target_rows
-from handeye.calibration.combined.planar_kernels import PARAMETERS
-from handeye.calibration.combined.settings import Settings
-from handeye.calibration.combined.sheet import DataSheet
-from handeye.calibration.combined.suggesting import best_pose, sightings_of
-from handeye.calibration.estimation.parameters import plant_with
-from handeye.calibration.models import PlanarModel
-from handeye.calibration.plant import PlanarPlant
-from handeye.calibration.world import Region
+from handeye.calibration.combined.robots import Model, Sheet, default_sheet, robot_of
+from handeye.calibration.engine.design import hand_slopes, without_gauges
+from handeye.calibration.engine.engine import Engine
+from handeye.calibration.engine.events import Event, Kind
+from handeye.calibration.engine.knowledge import RobotKnowledge, health, robot_knowledge
+from handeye.calibration.engine.robot import Acting
+from handeye.calibration.engine.settings import Settings
+from handeye.calibration.engine.suggestion import Suggestion, best_pose
 from handeye.errors import InvalidInput
-from handeye.geometry.angles import wrap
-from handeye.observations import StereoObservation, StereoTarget
+from handeye.observations import Observation, Target
 
 
 class Combined:
-    """Learns a planar robot's parameters, and for each stage a small function of its own variable.
+    """Learns a robot's parameters, and for each stage a small function of its own variable.
 
     What remains after that is left to a network over the full input, which is used only where it
     has proved itself. Observations that no hypothesis believes are left out; a run of surprises is
@@ -39,29 +30,26 @@ class Combined:
     same; none is kept for longer than the window.
 
     Args:
-        model: nominal kinematics; its head says how noisy sightings are.
-        sheet: how far the robot may be from nominal.
-        settings: how to learn.
+        model: nominal kinematics: a `PlanarModel`, or the `PlacedArm` of a URDF file.
+        sheet: how far the robot may be from nominal: a `DataSheet`, or an `ArmSheet`.
+        settings: how to learn; by default as suits the kind of robot.
 
     Raises:
-        InvalidInput: a model of another kind, one that foveates, or a nominal plant that drifts.
+        InvalidInput: a model of another kind, a sheet of another robot, or a nominal plant that
+            drifts.
     """
 
     def __init__(
-        self, model: PlanarModel, sheet: DataSheet | None = None, settings: Settings | None = None
+        self, model: Model, sheet: Sheet | None = None, settings: Settings | None = None
     ) -> None:
-        if not isinstance(model, PlanarModel):  # pyright: ignore[reportUnnecessaryIsInstance]
-            raise InvalidInput(
-                f"Combined needs a PlanarModel so far, got a {type(model).__name__}; use a "
-                "NetworkCorrection for other robots"
-            )
         self.model = model
-        self.sheet = sheet or DataSheet()
-        self.settings = settings or Settings()
-        doubt = (self.sheet.unexplained, self.sheet.resolution)
-        self.engine = Engine(planar_chain(model, self.sheet), self.settings, doubt)
-        space = PlanarModel(model.nominal).space
-        self.leftover = Leftover(space, 2, self.settings.capacity, self.settings.chance)
+        self.sheet = default_sheet(model) if sheet is None else sheet
+        self.robot = robot_of(model, self.sheet)
+        self.settings = settings or self.robot.settings
+        self.engine = Engine(self.robot.chain, self.settings, self.robot.doubt)
+        self.leftover = Leftover(
+            self.robot.space, self.robot.n_outputs, self.settings.capacity, self.settings.chance
+        )
         self.comparison = Comparison(self.settings.recent, self.settings.chance)
         self.falling_back = False
 
@@ -77,13 +65,20 @@ class Combined:
 
     @property
     def parameters(self) -> Array:
-        """The estimate (8,) in the order of estimation.NAMES: [m], [rad], and a number."""
-        return self.engine.chain.nominal[:PARAMETERS] + self.engine.x[:PARAMETERS]
+        """The estimate of all that is no curve, in the order of `knowledge`.
+
+        Of the planar robot (8,) in the order of estimation.NAMES: [m], [rad], and a number.
+        """
+        chain = self.engine.chain
+        return (chain.nominal + self.engine.x)[~chain.curved]
 
     @property
-    def plant(self) -> PlanarPlant:
-        """The nominal plant with the estimated parameters; it has none of the learned curves."""
-        return plant_with(self.model.nominal, self.parameters)
+    def plant(self) -> Any:
+        """The nominal robot with the estimated parameters; it has none of the learned curves.
+
+        A `PlanarPlant`, or a `CorrectedArm`.
+        """
+        return self.robot.corrected(self.engine.x)
 
     def knowledge(self) -> RobotKnowledge:
         """Every unknown with its uncertainty, by parts, and what is not determined."""
@@ -93,104 +88,87 @@ class Combined:
         """The state of the robot in words."""
         return health(self.engine, self.falling_back, self.leftover.proved)
 
-    def observe(self, observation: StereoObservation) -> Feedback:
+    def observe(self, observation: Observation) -> Feedback:
         """Learn from one observation; report the error made before learning."""
         if observation.joints.ndim != 1:
             raise InvalidInput("observe needs one observation; for N of them use observe_many")
-        return self._learn(seen_rows(observation))
+        return self._learn(self.robot.seen_rows(observation))
 
-    def observe_many(self, observations: StereoObservation) -> Feedback:
+    def observe_many(self, observations: Observation) -> Feedback:
         """Learn from N observations in order: the same result as one by one."""
         if observations.joints.ndim != 2:
             raise InvalidInput("observe_many needs a leading axis; for one observation use observe")
-        n = len(observations)
-        error, allocated = np.empty((n, 2)), np.empty(n, np.bool_)
-        for i, seen in enumerate(seen_rows(observations)):
+        n, m = len(observations), self.engine.chain.n_hand
+        error, allocated = np.empty((n, m)), np.empty(n, np.bool_)
+        for i, seen in enumerate(self.robot.seen_rows(observations)):
             error[i], allocated[i] = self._learn(seen)
         return Feedback(error, allocated)
 
-    def errors(self, observations: StereoObservation) -> Array:
-        """Errors (N, 2) [m] on N observations as it is, learning nothing."""
-        joints = self._commands(target_rows(observations.target))
-        out = np.empty((len(observations), 2))
-        for i, seen in enumerate(seen_rows(observations)):
-            missed(self.engine.chain.kernel, seen, joints[i], out[i])
-        return out
+    def errors(self, observations: Observation) -> Array:
+        """Errors (N, m) [m] on N observations as it is, learning nothing."""
+        return self.robot.errors(self._acting(), self.robot.seen_rows(observations))
 
-    def command(self, target: StereoTarget) -> Array:
+    def command(self, target: Target) -> Array:
         """Joint commands (encoder readings) for one target or N."""
-        rows = target_rows(target)
-        return self._commands(rows) if rows.ndim == 2 else self._commands(rows[np.newaxis])[0]
-
-    def covariance(self, target: StereoTarget, *, noise: bool = False) -> Array:
-        """How far the hand may miss a target, in the base frame: (2, 2) or (N, 2, 2) [m^2].
-
-        From what is not known of the robot; with `noise`, the sensor's noise in the sighting of
-        the target as well. The standard deviation along an axis is the root of the diagonal.
-        """
-        rows = target_rows(target)
+        rows = self.robot.target_rows(target)
         if rows.ndim == 1:
-            return self._covariance(rows[np.newaxis], noise)[0]
-        return self._covariance(rows, noise)
+            return self.robot.commands(self._acting(), rows[np.newaxis])[0]
+        return self.robot.commands(self._acting(), rows)
+
+    def covariance(self, target: Target, *, noise: bool = False) -> Array:
+        """How far the hand may miss a target: (m, m) or (N, m, m) [m^2].
+
+        In the base frame of the planar robot, in the sensor's frame of others. From what is not
+        known of the robot; with `noise`, the sensor's noise in the sighting of the target as well.
+        The standard deviation along an axis is the root of the diagonal.
+        """
+        rows = self.robot.target_rows(target)
+        out = self._covariance(np.atleast_2d(rows), noise)
+        return out[0] if rows.ndim == 1 else out
 
     def suggest(
-        self, region: Region | None = None, working_points: StereoTarget | None = None,
-        candidates: int = 400,
-    ) -> Suggestion:  # fmt: skip
+        self, region: Any = None, working_points: Target | None = None, candidates: int = 400
+    ) -> Suggestion:
         """The next pose, of the hand and of the eye beside it, that most helps the work.
 
         Args:
-            region: where the arm may go; its limits are the joints' limits.
+            region: where the arm may go: a `Region` of the planar robot; for others the joints (C,
+                n) to choose from, which a camera can see. By default all of the working range.
             working_points: where the hand must be accurate; by default the whole region.
             candidates: poses to choose from.
 
         Raises:
             InvalidInput: no working points or no candidates.
         """
-        where = Region() if region is None else region
-        poses, rows = sightings_of(self.engine, where, candidates)
+        poses, rows = self.robot.candidates(self.engine.x, region, count(candidates, "candidates"))
         if working_points is None:
-            tasks = sightings_of(self.engine, where, 64)[1]
+            tasks = self.robot.candidates(self.engine.x, region, 64)[1][:64]
         else:
-            tasks = self._tasks(working_points)
+            tasks = self._tasks(np.atleast_2d(self.robot.target_rows(working_points)))
         return best_pose(self.engine, poses, rows, tasks)
 
     def __repr__(self) -> str:
         """How much was observed, and the state."""
         return f"Combined({self.health()})"
 
-    def _inputs(self, joints: Array, seen: Array) -> Array:
-        """What the network is told (N, 5): learned command, pointing, range, eccentricity."""
-        return np.concatenate([joints, seen[:, 2:]], axis=1)
-
     def _learn(self, seen: Array) -> Feedback:
-        engine, settings = self.engine, self.settings
-        kernel, settled = engine.chain.kernel, self.n_observations >= 2 * settings.window
-        joints, misses = np.empty((2, 2)), np.empty((2, 2))
-        judge(kernel, engine.x, seen, settings.envelope, joints, misses)
-        lengths = np.hypot(misses[:, 0], misses[:, 1])
-        corrected, allocated = misses[1], False
-        if self.leftover.proved:
-            corrected = self._miss_with_network(seen)
-        error = misses[0] if self.falling_back else corrected
-        self._compare(float(np.hypot(corrected[0], corrected[1])), float(lengths[0]))
-        if engine.learn(seen) and settled and self.leftover.network and engine.leaves_something:
-            inputs = self._inputs(joints[1:], seen[np.newaxis])[0]
-            extra, allocated = self.leftover.learn(inputs, wrap(seen[:2] - joints[1]))
-            helped = np.empty(2)
-            missed(kernel, seen, joints[1] + extra, helped)
-            proved = self.leftover.proved
-            self.leftover.judge(float(lengths[1]), float(np.hypot(helped[0], helped[1])))
-            if self.leftover.proved != proved:
+        engine, settings, leftover = self.engine, self.settings, self.leftover
+        settled = self.n_observations >= 2 * settings.window
+        judged = self.robot.judge(engine.x, seen, settings.envelope)
+        corrected, allocated = judged.misses[1], False
+        if leftover.proved:
+            corrected = self.robot.errors(self._corrected(), seen[np.newaxis])[0]
+        error = judged.misses[0] if self.falling_back else corrected
+        nominal, learned = np.linalg.norm(judged.misses, axis=1)
+        self._compare(float(np.linalg.norm(corrected)), float(nominal))
+        if engine.learn(seen) and settled and leftover.network and engine.leaves_something:
+            extra, allocated = leftover.learn(*self.robot.lesson(seen, judged))
+            helped = float(np.linalg.norm(self.robot.helped(seen, judged, extra)))
+            proved = leftover.proved
+            leftover.judge(float(learned), helped)
+            if leftover.proved != proved:
                 self._tell("network", "no longer used" if proved else "used: it has proved itself")
         return Feedback(error, np.bool_(allocated))  # pyright: ignore[reportArgumentType]
-
-    def _miss_with_network(self, seen: Array) -> Array:
-        """Error (2,) of the command with the network, for a sighting of the hand (5,)."""
-        row, out = seen.copy(), np.empty(2)
-        row[:2] = 0.0, np.where(seen[1] >= 0.0, 1.0, -1.0)
-        missed(self.engine.chain.kernel, seen, self._corrected(row[np.newaxis])[0], out)
-        return out
 
     def _compare(self, corrected: float, nominal: float) -> None:
         """Fall back to nominal commands while corrected ones are worse beyond chance."""
@@ -205,41 +183,30 @@ class Combined:
     def _tell(self, kind: Kind, done: str) -> None:
         self.engine.events.append(Event(self.n_observations, kind, "", done))
 
-    def _commands(self, rows: Array) -> Array:
-        """Readings (N, 2) for sightings (N, 5), nominal while falling back."""
+    def _acting(self) -> Acting:
+        """Nominal while falling back."""
         if self.falling_back:
-            return self._acted(np.zeros_like(self.engine.x), np.zeros((len(rows), 2)), rows)
-        return self._corrected(rows)
+            return Acting(np.zeros_like(self.engine.x), None, self.settings.envelope)
+        return self._corrected()
 
-    def _corrected(self, rows: Array) -> Array:
-        joints = self._acted(self.engine.x, np.zeros((len(rows), 2)), rows)
-        if not self.leftover.proved:
-            return joints
-        return self._acted(self.engine.x, self.leftover.used(self._inputs(joints, rows)), rows)
+    def _corrected(self) -> Acting:
+        network = self.leftover.used if self.leftover.proved else None
+        return Acting(self.engine.x, network, self.settings.envelope)
 
-    def _acted(self, x: Array, extra: Array, rows: Array) -> Array:
-        joints, held = np.empty((len(rows), 2)), np.zeros(len(rows), np.bool_)
-        kernel, envelope = self.engine.chain.kernel, self.settings.envelope
-        act_many(kernel, x, extra, rows, envelope, joints, held)
-        return joints
-
-    def _tasks(self, target: StereoTarget) -> Array:
-        """Sightings (N, 5) of the hand at targets, with the joints that would be commanded."""
-        rows = np.atleast_2d(target_rows(target)).copy()
+    def _tasks(self, rows: Array) -> Array:
+        """Sightings (N, w) of the hand at targets, with the joints that would be commanded."""
         if not len(rows):
             raise InvalidInput("suggest needs at least one working point")
-        rows[:, :2] = self._commands(rows)
-        return rows
+        return self.robot.posed_rows(rows, self.robot.commands(self._acting(), rows))
 
     def _covariance(self, rows: Array, noise: bool) -> Array:
         engine, chain = self.engine, self.engine.chain
-        seen = rows.copy()
-        seen[:, :2] = self._commands(rows)
+        seen = self.robot.posed_rows(rows, self.robot.commands(self._acting(), rows))
         gauges = engine.rules.gauges[engine.flexible()]
         scaled = engine.covariance() / np.outer(chain.tolerance, chain.tolerance)
-        out = np.empty((len(rows), 2, 2))
-        by, hand = np.empty((2, len(engine.x))), np.empty((2, len(engine.x)))
-        to_metres = np.empty((2, 2))
+        m, k, n = chain.n_hand, chain.n_values, len(engine.x)
+        out = np.empty((len(rows), m, m))
+        by, hand, to_metres = np.empty((k, n)), np.empty((m, n)), np.empty((m, k))
         for i, row in enumerate(seen):
             hand_slopes(
                 chain.kernel, engine.x, chain.tolerance, row, engine.doubt, by, hand, to_metres

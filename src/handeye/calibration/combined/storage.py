@@ -7,11 +7,13 @@ from typing import Any
 import numpy as np
 
 from handeye.arrays import Array, finite
+from handeye.calibration.arm.sheet import ArmSheet
 from handeye.calibration.combined.calibrator import Combined
-from handeye.calibration.combined.events import Event
-from handeye.calibration.combined.filter import Bank
-from handeye.calibration.combined.settings import Hypothesis, Settings
-from handeye.calibration.combined.sheet import DataSheet
+from handeye.calibration.combined.planar.sheet import DataSheet
+from handeye.calibration.combined.robots import Model, Sheet
+from handeye.calibration.engine.events import Event
+from handeye.calibration.engine.filter import Bank
+from handeye.calibration.engine.settings import Hypothesis, Settings
 from handeye.calibration.models import PlanarModel
 from handeye.networks.storage import from_arrays, to_arrays
 
@@ -34,6 +36,7 @@ def combined_to_arrays(combined: Combined) -> tuple[dict[str, Array], dict[str, 
         "settings": asdict(combined.settings),
         "doubt": engine.doubt,
         "leader": engine.leader,
+        "drifting": engine.drifting,
         "events": [asdict(event) for event in engine.events],
         "falling_back": combined.falling_back,
         "proved": leftover.proved,
@@ -46,7 +49,7 @@ def combined_to_arrays(combined: Combined) -> tuple[dict[str, Array], dict[str, 
 
 
 def combined_from_arrays(
-    model: PlanarModel, arrays: dict[str, Array], settings: dict[str, Any]
+    model: Model, arrays: dict[str, Array], settings: dict[str, Any]
 ) -> Combined:
     """The calibrator of `combined_to_arrays`.
 
@@ -54,12 +57,14 @@ def combined_from_arrays(
     """
     fields = dict(settings["settings"])
     ways = tuple(Hypothesis(**way) for way in fields.pop("hypotheses"))
-    combined = Combined(model, DataSheet(**settings["sheet"]), Settings(hypotheses=ways, **fields))
+    sheet = _sheet(model, dict(settings["sheet"]))
+    combined = Combined(model, sheet, Settings(hypotheses=ways, **fields))
     engine, leftover = combined.engine, combined.leftover
     engine.bank = _bank(engine.bank, arrays)
     engine.x = _like(engine.x, arrays["x"])
     engine.shares = _like(engine.shares, arrays["shares"])
     engine.doubt, engine.leader = float(settings["doubt"]), int(settings["leader"])
+    engine.drifting = bool(settings.get("drifting", False))
     if not 0 <= engine.leader < len(ways):
         raise ValueError(f"hypothesis {engine.leader} of {len(ways)} leads")
     engine.events = deque((Event(**e) for e in settings["events"]), engine.events.maxlen)
@@ -71,6 +76,13 @@ def combined_from_arrays(
         inside = {n.removeprefix(_NETWORK): a for n, a in arrays.items() if n.startswith(_NETWORK)}
         leftover.network = from_arrays(inside, settings["network"])
     return combined
+
+
+def _sheet(model: Model, fields: dict[str, Any]) -> Sheet:
+    """The sheet of `dataclasses.asdict`."""
+    if isinstance(model, PlanarModel):
+        return DataSheet(**fields)
+    return ArmSheet.restored(fields)
 
 
 def _like(old: Array, new: Array) -> Array:

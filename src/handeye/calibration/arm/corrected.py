@@ -1,0 +1,58 @@
+"""An arm as learned, but for its curves: constants that a URDF file can state."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from handeye.arrays import Array
+from handeye.calibration.arm.kernels import TWIST, SerialArm, joint_at
+from handeye.calibration.placement import Placement
+from handeye.geometry import make_pose
+from handeye.robots.stages import Stages
+
+
+@dataclass(frozen=True, eq=False)
+class CorrectedArm:
+    """Constants of an arm that was calibrated.
+
+    stages       the chain with corrected placements, and axes as in the nominal one
+    placement    base and marker
+    scales       (n,) what each reading is multiplied by
+    compliances  (n,) what each joint gives way under a load [rad/Nm] or [m/N]
+    """
+
+    stages: Stages
+    placement: Placement
+    scales: Array
+    compliances: Array
+
+
+def corrected(kernel: SerialArm, stages: Stages, x: Array) -> CorrectedArm:
+    """The arm with constants of unknowns x (n_x,); stages are the nominal ones.
+
+    A twist is stated in the upright frame of its joint, turned by A from the frame of the URDF
+    file: there it is A E(xi) A^T.
+    """
+    n = len(kernel.slides)
+    ways, turns = stages.placements.copy(), stages.turns
+    scales, compliances = np.ones(n), np.zeros(n)
+    for j in range(n):
+        at = joint_at(kernel, j)
+        shift, turn = x[at : at + 3] @ turns[j].T, x[at + 3 : at + TWIST] @ turns[j].T
+        ways[j] = ways[j] @ _shifted(shift, turn)
+        scales[j] += x[at + TWIST]
+        if kernel.compliant:
+            compliances[j] = x[at + TWIST + 1]
+    marker = np.zeros(TWIST)
+    marker[: kernel.n_marker] = x[TWIST : TWIST + kernel.n_marker]
+    placement = Placement(
+        kernel.T_sensor_base @ _shifted(x[:3], x[3:TWIST]),
+        _shifted(marker[:3], marker[3:]) @ kernel.T_flange_marker,
+    )
+    return CorrectedArm(Stages(ways, stages.axes, stages.slides), placement, scales, compliances)
+
+
+def _shifted(shift: Array, turn: Array) -> Array:
+    """E(t, r): the pose that shifts by t and turns by exp([r]x)."""
+    return make_pose(Rotation.from_rotvec(turn).as_matrix(), shift)

@@ -1,0 +1,1 @@
+"""The planar robot as the combined calibrator sees it."""

@@ -1,0 +1,1 @@
+"""Follows the unknowns of a chain, observation by observation; knows nothing of any robot."""
