@@ -5,7 +5,7 @@ from tests.catching.trained import SETTINGS, WORLD, copied, throws, trained
 from handeye.catching import practice
 from handeye.catching.learner import Learner
 from handeye.catching.play import play
-from handeye.catching.settings import IMPROVED, THESIS
+from handeye.catching.settings import IMPROVED, SMOOTH, THESIS
 
 
 @pytest.mark.parametrize("name", SETTINGS)
@@ -96,3 +96,24 @@ def test_only_the_improved_learner_shakes_an_unknown_arm():
     assert np.all(first[0] == 0.0)
     assert np.all(np.abs(first[1]) == IMPROVED.excitation)
     assert THESIS.excitation == 0.0
+
+
+def test_a_lead_asks_the_arm_to_be_there_earlier_as_long_as_it_can():
+    seen = practice.test(trained("smooth"), WORLD, throws(6, 9), arm=1, ball=0)
+    traces, time = seen.traces, seen.sensed.time
+    early = traces["crossing_time"] - SMOOTH.lead
+    known = np.isfinite(early)
+    assert (early > time)[known].any()
+    assert (early <= time)[known].any()
+    np.testing.assert_array_equal(
+        traces["stop_time"][known], np.where(early > time, early, traces["crossing_time"])[known]
+    )
+
+
+def test_an_unknown_arm_is_moved_as_the_first_until_it_is_recognised(tmp_path):
+    learner = copied(trained("thesis"), tmp_path)
+    learner.repertoire.arm_recogniser.threshold = 9.0  # never recognises
+    thrown = throws(6, 10, arms=(1,))
+    unknown, first = (practice.test(learner, WORLD, thrown, arm=a, ball=1) for a in (None, 0))
+    assert np.nanmax(np.abs(unknown.voltage)) > 0.0
+    np.testing.assert_array_equal(unknown.voltage, first.voltage)

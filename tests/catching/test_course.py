@@ -8,7 +8,7 @@ import pytest
 from handeye.catching.course import MARKS, Course, Exam, Plan, Practice, steps
 from handeye.catching.course_file import load_course, save_course
 from handeye.catching.learner import Learner
-from handeye.catching.settings import THESIS
+from handeye.catching.settings import IMPROVED, THESIS
 from handeye.catching.world import World
 from handeye.errors import FileFormatError, InvalidInput
 from handeye.io.tensors import read_tensors, write_tensors
@@ -96,6 +96,14 @@ def test_a_course_does_what_the_plan_says(whole):
     assert [take.title for take in whole.takes] == titles
     assert all(score.n == 2 for mark in whole.marks for score in mark.scores)
     assert len(whole.marks[0].scores) == 4
+
+
+def test_who_takes_no_advice_has_no_mentor():
+    course = Course(Learner(IMPROVED), WORLD, replace(PLAN, pursuits=2))
+    assert course.trials_left == 4 + 4 + 2 + 2
+    assert course.run()
+    assert course.learner.mentored == course.trials_left == 0
+    assert [mark.mentored for mark in course.marks] == [0, 0]
 
 
 def test_before_its_first_pursuit_the_arm_does_not_move(whole):

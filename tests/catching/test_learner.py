@@ -5,8 +5,11 @@ import pytest
 from tests.catching.trained import record
 
 from handeye.catching.learner import Learner, last_known
-from handeye.catching.pursuit import Movements
+from handeye.catching.memory import ShortTermMemory
+from handeye.catching.movements import Movements
+from handeye.catching.recognition import UNKNOWN
 from handeye.catching.settings import THESIS, CatcherSettings, Tuning
+from handeye.catching.signals import ARM_RECOGNITION
 from handeye.errors import InvalidInput
 
 STOPPED = np.concatenate([np.linspace(1.0, 1.5, 26), np.full(15, 1.5)])
@@ -43,10 +46,14 @@ def test_an_arm_is_learned_by_table_4_1():
     expected = [[0.0, 0.08, 0.065], [1.6, 0.06, 0.04], [1.5, 0.02, 0.015]]
     np.testing.assert_allclose(motor.inputs, expected, rtol=1e-9)
     np.testing.assert_array_equal(motor.outputs, [[0.5], [0.5], [-0.5]])
-    # Voltage, velocity -> the way to the next tick, velocity and force there; and rest stays rest.
-    np.testing.assert_allclose(state.inputs, [[0.5, 0.0], [0.5, 1.6], [0.0, 0.0]])
+    # Voltage, velocity -> the way to the next tick, velocity and force there; before it began, rest
+    # stayed rest.
+    resting = np.zeros((ARM_RECOGNITION.reach, 2))
+    np.testing.assert_allclose(state.inputs, [*resting, [0.5, 0.0], [0.5, 1.6]])
     np.testing.assert_allclose(
-        state.outputs, [[0.02, 1.6, 3.0], [0.04, 1.5, 2.0], [0.0, 0.0, 0.0]], atol=1e-12
+        state.outputs,
+        [*np.zeros((len(resting), 3)), [0.02, 1.6, 3.0], [0.04, 1.5, 2.0]],
+        atol=1e-12,
     )
     assert learner.pursuits == [0, 1]
 
@@ -68,12 +75,12 @@ def coached(**kwargs):
 
 
 def test_the_mentor_adds_eq_4_5_and_4_6_to_what_was_generated():
-    spy = coached(crossing=(1.58, 0.9), generated=(0.01, -0.02))
-    expected = [0.01 + (1.58 - 1.5), -0.02 + (0.9 - 0.575 - 0.1)]
+    spy = coached(crossing=(1.53, 0.75), generated=(0.01, -0.02))
+    expected = [0.01 + (1.53 - 1.5), -0.02 + (0.75 - 0.575 - 0.1)]
     np.testing.assert_allclose(spy.outputs, np.tile(expected, (41, 1)))
     time = 0.025 * np.arange(41)
-    np.testing.assert_allclose(spy.inputs[:, 1], 1.58 - STOPPED)
-    np.testing.assert_allclose(spy.inputs[:, 2], 0.9 - time)
+    np.testing.assert_allclose(spy.inputs[:, 1], 1.53 - STOPPED)
+    np.testing.assert_allclose(spy.inputs[:, 2], 0.75 - time)
 
 
 def test_a_late_arm_is_sent_earlier_and_a_far_one_back():
@@ -132,3 +139,33 @@ def test_impossible_settings_are_refused(bad):
 def test_impossible_tunings_are_refused(bad):
     with pytest.raises(InvalidInput):
         Tuning(**({"input_scales": (1.0,), "output_scales": (1.0,), "threshold": 0.1} | bad))
+
+
+def test_the_arm_recogniser_remembers_the_rest_before_a_movement():
+    learner = Learner()
+    spy = cast("Any", Spy(learner.repertoire.arm_recogniser.skill))
+    learner.repertoire.arm_recogniser.skill = spy
+    learner.learn_arm(1, movement())
+    # From the second tick on there is something to recognise; six ticks before it was at rest.
+    way = [0.02, 0.04]
+    np.testing.assert_allclose(spy.inputs[:, 0], [0.5, 0.5])
+    np.testing.assert_allclose(spy.inputs[:, [1, 3, 7]], 0.0)
+    np.testing.assert_allclose(spy.inputs[:, 4], way)
+    np.testing.assert_allclose(spy.inputs[:, 5], np.cumsum(way))
+    np.testing.assert_array_equal(spy.outputs, [[0.0, 1.0], [0.0, 1.0]])
+
+
+def test_an_arm_that_was_left_alone_is_not_recognised():
+    learner = Learner()
+    learner.learn_arm(1, movement())
+    recogniser = learner.repertoire.arm_recogniser
+    recogniser.threshold = -9.0  # names whatever it hears of
+    streams = ("voltage", "arm_x", "arm_v", "arm_force")
+    memory = ShortTermMemory(streams, 8, 1)
+    for moved in (0.0, 0.1):
+        for _ in range(8):
+            memory.tick()
+            for name in streams:
+                memory.record(name, [moved])
+        named = recogniser.choose(memory, np.array([0]))
+        assert (named == [UNKNOWN]) == (moved == 0.0)

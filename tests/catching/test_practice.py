@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.catching.trained import WORLD, throws
@@ -68,8 +70,10 @@ def test_watched_balls_are_not_touched():
 
 def test_gentle_practice_is_uniform_in_the_logarithm_of_the_amplitude():
     drawn = [
-        practice._pursuits(Learner(settings), WORLD, 1, 200, np.random.default_rng(0)).amplitude
-        for settings in (THESIS, IMPROVED)
+        practice._pursuits(
+            Learner(replace(IMPROVED, gentle=gentle)), WORLD, 1, 200, np.random.default_rng(0)
+        ).amplitude
+        for gentle in (False, True)
     ]
     np.testing.assert_allclose(drawn[1], 0.03 ** ((1.0 - drawn[0]) / 0.97))
     assert 0.03 <= drawn[1].min() < 0.04

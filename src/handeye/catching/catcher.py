@@ -5,6 +5,7 @@ import numpy as np
 from handeye.arrays import Array, Booleans, Integers
 from handeye.catching.commands import StepwiseCommands, TriggeredProfiles
 from handeye.catching.memory import ShortTermMemory
+from handeye.catching.recognition import UNKNOWN
 from handeye.catching.repertoire import Repertoire
 from handeye.catching.settings import CatcherSettings
 from handeye.catching.signals import GOALS, SENSES
@@ -79,7 +80,7 @@ class Catcher:
         self._ball.judge(memory)
         self._arm.judge(memory)
         self._aim()
-        command = self._commands.command(memory, self._arm.latest, self._ball.comprehended)
+        command = self._commands.command(memory, self._commanded(), self._ball.comprehended)
         command = np.where(sensed.active, self._excite(command), 0.0)
         memory.record("voltage", command)
         memory.record("command", command)
@@ -117,15 +118,22 @@ class Catcher:
         memory.record("crossing_vx", crossing[:, 0])
         memory.record("crossing_time", memory.at("time") + crossing[:, 1])
         memory.record("crossing_x", memory.at("ball_x") + crossing[:, 2])
-        correction = ask(own.corrections, self._arm.latest, memory)
+        correction = ask(own.corrections, self._commanded(), memory)
         memory.record("correction_x", correction[:, 0])
         memory.record("correction_time", correction[:, 1])
         memory.record("stop_x", memory.at("crossing_x") + correction[:, 0])
-        arrival = memory.at("crossing_time") + correction[:, 1]
+        arrival = memory.at("crossing_time") + correction[:, 1] - self._settings.lead
         if self._repeated:
             # Who is there early may pursue once more, until the ball comes.
             arrival = np.where(arrival > memory.at("time"), arrival, memory.at("crossing_time"))
         memory.record("stop_time", arrival)
+
+    def _commanded(self) -> Integers:
+        """Whose nets move each arm (N,): of who it is or was last taken for, else the first.
+
+        An arm that is not moved is never recognised (footnote 10).
+        """
+        return np.where(self._arm.latest == UNKNOWN, 0, self._arm.latest)
 
     def _excite(self, command: Array) -> Array:
         """Move each arm to and fro, and once more where the response did not show which it is.

@@ -6,8 +6,8 @@ import numpy as np
 
 from handeye.arrays import Array, Booleans, Integers
 from handeye.catching.memory import ShortTermMemory
+from handeye.catching.phases import MOVING, PursuitPhases
 from handeye.catching.profile import AntisymmetricProfile
-from handeye.catching.pursuits import MOVING, Pursuits
 from handeye.catching.settings import CatcherSettings
 from handeye.catching.signals import MOTOR_COMMAND, read
 from handeye.catching.skills import Skill, answers, ask, novelties
@@ -36,12 +36,12 @@ class StepwiseCommands:
         self._motors = motors
         self._limits = settings.novelty_limits
         self._least_novelty = np.full(n, np.inf)
-        self._pursuits = Pursuits(n, settings.rest_speed, settings.reach, repeated=repeated)
+        self._phases = PursuitPhases(n, settings.rest_speed, repeated=repeated)
 
     @property
     def pursuing(self) -> Booleans:
         """Where (N,) a pursuit is under way."""
-        return self._pursuits.state == MOVING
+        return self._phases.phase == MOVING
 
     def command(self, memory: ShortTermMemory, arm: Integers, comprehended: Booleans) -> Array:
         """Voltages (N,) for the goal in memory; 0, the damped safe state, outside of pursuits.
@@ -59,7 +59,8 @@ class StepwiseCommands:
             novelty = novelties(self._motors, arm, inputs)
             may_begin = self._familiar(novelty)
             understood = understood & (novelty <= self._limits[1])
-        pursuing = self._pursuits.advance(understood, may_begin, *inputs.T)
+        arm_v, _, remaining = inputs.T
+        pursuing = self._phases.advance(understood, may_begin, arm_v, remaining)
         return np.where(pursuing, voltage, 0.0)
 
     def _familiar(self, novelty: Array) -> Booleans:

@@ -1,7 +1,7 @@
 """A course of practice that can be left at any point and gone on with later."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from time import process_time
 from typing import Literal, NamedTuple
 
@@ -35,7 +35,8 @@ class Plan:
 
     pursuits     with each arm
     tosses       of each ball
-    mentored     throws with the mentor, over all arms and balls
+    mentored     throws with the mentor, over all arms and balls; none for a learner whose settings
+                 take no advice
     arms, balls  identities
     mark_throws  of each ball to each arm at every test during training
     replicate    another number, other movements, tosses and throws
@@ -104,7 +105,7 @@ class Course:
     @property
     def trials_left(self) -> int:
         """Tosses, pursuits and mentored throws that the plan still asks for."""
-        plan, learner = self.plan, self.learner
+        plan, learner = self._asked, self.learner
         lacking = [plan.tosses - learner.tosses[ball] for ball in plan.balls]
         lacking += [plan.pursuits - learner.pursuits[arm] for arm in plan.arms]
         return sum(max(number, 0) for number in (*lacking, plan.mentored - learner.mentored))
@@ -120,7 +121,7 @@ class Course:
 
         Returns whether the course went to its end.
         """
-        for step in steps(self.plan):
+        for step in steps(self._asked):
             if not self._due(step):
                 continue
             if not before_each(step):
@@ -140,6 +141,12 @@ class Course:
     def surprise(self) -> Recording:
         """A few throws at which it believes in the wrong ball and the wrong arm."""
         return self._played("throws with wrong beliefs", _SHOWN, "wrong", _AFTERWARDS)
+
+    @property
+    def _asked(self) -> Plan:
+        """The plan, without a mentor for a learner that takes no advice."""
+        heeded = self.learner.settings.takes_advice
+        return self.plan if heeded else replace(self.plan, mentored=0)
 
     def _played(self, name: str, n: int, beginning: Beginning, after: float = 0.0) -> Recording:
         throws = self._draw(name, n)

@@ -9,12 +9,12 @@ from handeye.arrays import Array, Integers, count
 from handeye.catching import storage
 from handeye.catching.catcher import Catcher
 from handeye.catching.mentor import advise, arrival
+from handeye.catching.movements import Movements
 from handeye.catching.play import Recording
-from handeye.catching.pursuit import Movements
 from handeye.catching.recognition import UNKNOWN
 from handeye.catching.repertoire import Repertoire
 from handeye.catching.settings import THESIS, CatcherSettings
-from handeye.catching.signals import SENSES
+from handeye.catching.signals import ARM_RECOGNITION, SENSES
 from handeye.catching.skills import Skill, samples
 from handeye.errors import InvalidInput
 
@@ -65,7 +65,7 @@ class Learner:
         streams["profile_x"], streams["profile_amplitude"] = _profiles(streams)
         own = self.repertoire
         self._practise(own.motors[identity], streams)
-        streams |= _with_rest(streams, free)
+        streams = _from_rest(streams)
         self._practise(own.arm_states[identity], streams)
         own.arm_recogniser.learn(identity, streams, self.settings.delays)
         self.pursuits[identity] += len(movements)
@@ -171,17 +171,12 @@ def last_known(identities: Array) -> Integers:
     return known[last, np.arange(known.shape[1])]
 
 
-def _with_rest(streams: Mapping[str, Array], movements: Movements) -> dict[str, Array]:
-    """The arm's streams and two ticks at rest after each movement: left alone, it stays there.
-
-    The tick between is left out, since the command of the one before was not held to its end.
-    """
-    rest = {"arm_x": movements.stop_x, "arm_v": 0.0, "arm_force": 0.0, "voltage": 0.0}
-    empty = np.full((3, len(movements)), np.nan)
-    ticks = np.arange(len(movements.time) + 3)[:, np.newaxis]
-    resting = (ticks > movements.n_ticks) & (ticks <= movements.n_ticks + 2)
+def _from_rest(streams: Mapping[str, Array]) -> dict[str, Array]:
+    """What the arm's streams (T, N) held since before each movement: it had been left alone."""
+    rest = {"arm_x": streams["arm_x"][:1], "arm_v": 0.0, "arm_force": 0.0, "voltage": 0.0}
+    earlier = (ARM_RECOGNITION.reach, streams["arm_x"].shape[1])
     return {
-        name: np.where(resting, value, np.vstack([streams[name], empty]))
+        name: np.vstack([np.broadcast_to(value, earlier), streams[name]])
         for name, value in rest.items()
     }
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from handeye.arrays import Array, Integers, count
 from handeye.catching.learner import Learner
+from handeye.catching.movements import Pulses, draw_pursuits, execute
 from handeye.catching.play import Recording, play
-from handeye.catching.pursuit import Pulses, draw_pursuits, execute
 from handeye.catching.throws import Throws, draw_throws
 from handeye.catching.world import Sensed, World
 from handeye.errors import InvalidInput

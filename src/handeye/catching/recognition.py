@@ -32,6 +32,7 @@ class Recogniser:
     def learn(self, identity: int, streams: Mapping[str, Array], delays: Mapping[str, int]) -> None:
         """Associate memory's traces of trials (T, N) with an identity."""
         inputs = samples(self.skill.table, streams, delays).inputs
+        inputs = inputs[np.any(inputs, axis=1)]
         lines = np.zeros((len(inputs), self.skill.network.n_outputs))
         lines[:, identity] = 1.0
         self.skill.practise(inputs, lines)
@@ -40,7 +41,7 @@ class Recogniser:
         """Identities of the trials `rows`; UNKNOWN where no line is high or memory is too short."""
         inputs = read(self.skill.table.inputs, memory)[rows]
         chosen = np.full(len(rows), UNKNOWN)
-        reached = np.flatnonzero(~np.isnan(inputs).any(axis=1))
+        reached = np.flatnonzero(~np.isnan(inputs).any(axis=1) & np.any(inputs, axis=1))
         if reached.size:
             lines = self.skill.answer(inputs[reached])
             high = lines.max(axis=1) > self.threshold

@@ -6,8 +6,8 @@ import pytest
 from handeye.catching.arm import ARMS, HEAVY_ARM, LIGHT_ARM
 from handeye.catching.layout import Layout
 from handeye.catching.motion import position_after, velocity_after
+from handeye.catching.movements import EPSILON, Pulses, draw_pursuits, execute
 from handeye.catching.profile import AntisymmetricProfile
-from handeye.catching.pursuit import EPSILON, Pulses, draw_pursuits, execute
 from handeye.errors import InvalidInput
 
 
