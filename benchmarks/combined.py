@@ -19,7 +19,8 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from handeye.calibration.combined import Combined, planar
+from handeye.calibration.combined import Combined
+from handeye.calibration.combined.planar import chain as planar
 from handeye.calibration.models import PlanarModel
 from handeye.calibration.session import WorldStreams
 from handeye.calibration.world import PlanarWorld

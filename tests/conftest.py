@@ -33,6 +33,9 @@ def _kernel_cache() -> Path:
     return REPOSITORY / ".cache" / "numba" / (digest.hexdigest()[:16] + checked)
 
 
+# Tests run side by side: each with the linear algebra of one core.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 # Read by scipy when it is first imported: scikit-learn's check of array types skips without it.
 os.environ["SCIPY_ARRAY_API"] = "1"
 

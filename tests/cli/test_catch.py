@@ -107,10 +107,11 @@ def test_ctrl_c_keeps_what_is_learned_and_going_on_ends_the_same(
     tmp_path: Path, request: pytest.FixtureRequest
 ):
     learner, out = tmp_path / "learner.safetensors", ("--out", tmp_path)
-    whole = data_of("catch", *ONE_PAIR, *out)
+    course = (*ONE_PAIR, "--settings", "thesis")
+    whole = data_of("catch", *course, *out)
     request.getfixturevalue("interrupted")
     before = signal.getsignal(signal.SIGINT)
-    stopped = run("catch", *ONE_PAIR, "--save", learner, *out)
+    stopped = run("catch", *course, "--save", learner, *out)
     assert stopped.exit_code == INTERRUPTED
     assert f"--learner {learner} --save {learner}" in " ".join(stopped.stderr.split())
     assert "2 trials left" in stopped.stderr

@@ -83,7 +83,7 @@ def test_json_has_every_number_and_nothing_else_is_printed(log: Path, tmp_path: 
     data = json.loads(printed)
     assert data["robot"] == "planar"
     assert data["n_observations"] == 300
-    for stage, n in (("before", 300), ("online", 300), ("held_out_before", 100)):
+    for stage, n in (("before", 300), ("online", 300), ("held_out_before", 300)):
         errors = data["errors"][stage]
         assert errors["n"] == n
         assert 0.0 < errors["mean"] <= errors["rms"] <= errors["max"]
@@ -137,17 +137,22 @@ def test_the_ur10_log_end_to_end(shared_data: Path, tmp_path: Path):
     pytest.importorskip("pinocchio")
     source = shared_data / "ur10_joint_configurations" / "measurements_joint_configurations.csv"
     done("convert", source, tmp_path / "ur10.csv")
-    out = ("--out", tmp_path, "--json", "-")
-    data = json.loads(done("calibrate", tmp_path / "ur10.csv", "--robot", "ur10", *out).stdout)
+    out = ("--robot", "ur10", "--out", tmp_path, "--json", "-")
+    network = done("calibrate", tmp_path / "ur10.csv", "--method", "network", *out)
+    data = json.loads(network.stdout)
     errors = data["errors"]
     assert data["n_observations"] == 1495
     assert errors["held_out_before"]["mean"] == pytest.approx(1.04e-3, abs=0.05e-3)
     assert errors["held_out_after"]["mean"] < 0.6e-3
     assert errors["online"]["mean"] < 0.45e-3
-    estimator = ("--robot", "ur10", "--method", "estimator", "--out", tmp_path)
-    assert "planar robot" in refused("calibrate", tmp_path / "ur10.csv", *estimator)
 
     rows = rows_of(tmp_path / "ur10.csv")
+    part = write(tmp_path / "part.csv", rows[:201])
+    combined = json.loads(done("calibrate", part, "--validate", "random", *out).stdout)
+    assert combined["method"] == "combined"
+    errors = combined["errors"]
+    assert errors["held_out_after"]["mean"] < 0.5 * errors["held_out_before"]["mean"]
+
     targets = write(tmp_path / "targets.csv", [rows[0], *rows[2:12]])
     model = tmp_path / "ur10.model.safetensors"
     done("apply", model, targets, "--out", tmp_path / "commands.csv")

@@ -93,7 +93,6 @@ def test_a_verdict_is_no_failure(monkeypatch: pytest.MonkeyPatch):
     ("arguments", "message"),
     [
         (("plant-uncorected",), "did you mean plant-uncorrected"),
-        (("bep",), "no experiment of this version measures bep-hand-eye"),
         (("--replicates", "0"), "--replicates"),
         (("--jobs", "0"), "--jobs"),
         (("--jobs", "many"), "--jobs"),

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from handeye.calibration.results import CalibrationResult, HeldOut
+from handeye.calibration.results import CalibrationResult, HeldOut, Influence, PartChange
 from handeye.reports.demo import DemoRun
 from handeye.reports.figures import PlanarArm, Stage
 
@@ -22,6 +22,11 @@ def ur_run(n=1495, held_out=True, rejected=(), log="ur10_log.csv"):
     online = before * left[:, None] + rng.normal(0.0, 1.3e-4, (n, 3))
     rows = np.sort(rng.permutation(n)[: n // 3])
     after = 0.26 * before[rows] + rng.normal(0.0, 1.2e-4, (len(rows), 3))
+    turns = rng.normal(0.0, 1e-3, (len(rows), 3))
+    held = HeldOut(
+        rows, before[rows], after, rows * 5 // n, "blocks", 2.0 * turns, turns, np.full(5, 8e-5)
+    )
+    residual = np.linalg.norm(online, axis=1)
     return CalibrationResult(
         robot="ur10",
         log=log,
@@ -39,9 +44,17 @@ def ur_run(n=1495, held_out=True, rejected=(), log="ur10_log.csv"):
         before=before,
         online=online,
         n_neurons=np.minimum(np.arange(1, n + 1) // 2 + 1, 500),
-        held_out=HeldOut(rows, before[rows], after) if held_out else None,
+        held_out=held if held_out else None,
         rejected=tuple(rejected),
         settings={"seed": "0", "neurons at most": "500", "held out": "one third", "log": log},
+        times=np.arange(n) / 2.0,
+        rows=np.arange(n) + 2,
+        parts=(
+            PartChange("zero of joint elbow", 8.2e-4, "elbow zero", -1.1e-3, 4e-5, "rad", 0.97),
+            PartChange("placement of joint wrist_1", 3.1e-4, "shift x", 2.9e-4, 6e-5, "m", 0.62),
+        ),
+        undetermined=("scale of joint wrist_3",),
+        influence=Influence(residual, residual / np.median(residual), residual > 3e-3),
     )
 
 

@@ -84,6 +84,13 @@ def test_a_robot_that_was_not_seen_before_practice_or_does_no_better_is_not_prai
     assert "practice has not helped" in headline([perfect])
 
 
+def test_a_mentor_is_named_only_where_one_advised(animation):
+    alone = replace(RESULT, marks=[mark for mark in RESULT.marks if not mark.mentored])
+    for result, advised in ((RESULT, True), (alone, False)):
+        subtitle = catching_page(result, animation, layout=LAYOUT).subtitle
+        assert ("mentor" in subtitle) == advised
+
+
 def test_without_training_there_is_no_early_and_late(animation):
     result = replace(RESULT, marks=RESULT.marks[:1], takes=RESULT.takes[-1:])
     headings = [

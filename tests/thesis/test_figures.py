@@ -37,12 +37,12 @@ def all_text(figure: Figure) -> str:
 
 def test_every_figure_of_the_chapters_is_drawn_or_listed_with_a_reason():
     assert list(FIGURES) == [
-        f"{c}.{n}" for c, most in ((3, 53), (4, 18), (6, 6)) for n in range(1, most + 1)
+        f"{c}.{n}" for c, most in ((3, 53), (4, 18), ("A", 8), (6, 11)) for n in range(1, most + 1)
     ]
     listed = [figure for figure in FIGURES.values() if isinstance(figure, NotDrawn)]
     assert {figure.number for figure in listed} == {
         "3.1", "3.2", "3.3", "3.4", "3.5", "3.6", "3.7", "3.17", "3.19", "3.50",
-        "4.2", "4.5", "4.6", "4.17", "4.18",
+        "4.2", "4.5", "4.6", "4.17", "4.18", "A.1", "A.2", "A.3", "A.4", "A.5",
     }  # fmt: skip
     assert all(len(figure.reason) > 20 for figure in listed)
     assert Counter(f.number for topic in TOPICS.values() for f in topic) == Counter(
@@ -68,7 +68,7 @@ def test_a_figure_shows_the_claims_that_name_it_and_those_that_it_declares():
         "step-time-constant", "step-initial-error", "step-final-error",
     }  # fmt: skip
     shown = {claim for figure in DRAWN for claim in figure.shows}
-    in_chapters = [c.id for c in claims_by_id().values() if re.search("figures? [34]", c.where)]
+    in_chapters = [c.id for c in claims_by_id().values() if re.search("figures? [34A]", c.where)]
     assert shown.issuperset(in_chapters)
     for figure in DRAWN:
         alone = replace(figure, claims=()).shows
@@ -104,7 +104,7 @@ def test_a_figure_is_the_same_each_time(smoke_run: Stored):
 
 def test_figures_are_found_by_number():
     assert find_figure("3.22").number == "3.22"
-    with pytest.raises(InvalidInput, match=r"no figure 3\.54: figures go from 3\.1 to 6\.6"):
+    with pytest.raises(InvalidInput, match=r"no figure 3\.54: figures go from 3\.1 to 6\.11"):
         find_figure("3.54")
     with pytest.raises(InvalidInput, match=r"figure 3\.17 shows no result: a sketch"):
         find_figure("3.17")
@@ -115,6 +115,7 @@ def test_figures_are_found_by_number():
 )
 def test_ways_to_name_a_figure(name: str):
     assert figure_number(name) == "3.22"
+    assert figure_number(name.replace("3.22", "a.7")) == "A.7"
 
 
 @pytest.mark.parametrize("name", ["preferred", "3", "3.22b", "claim-3.22", "3.2.2", ""])

@@ -123,6 +123,7 @@ def test_headlines():
     assert headline([row("not testable")]) == "0 of 1 claim reproduced"
     assert tally([row(), row("not testable")]) == {
         "reproduced": 1, "not reproduced": 0, "met": 0, "not met": 0, "not testable": 1,
+        "not run": 0,
     }  # fmt: skip
 
 

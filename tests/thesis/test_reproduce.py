@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import pytest
 
 from handeye.errors import InvalidInput
@@ -51,9 +53,12 @@ def test_a_name_is_not_matched_in_the_middle_of_a_word():
         select(["plan"])
 
 
-def test_claims_without_an_experiment_are_named():
-    with pytest.raises(InvalidInput, match=r"no experiment .* bep-hand-eye; it has"):
-        reproduce(["bep-*"])
+def test_claims_without_an_experiment_are_named(monkeypatch: pytest.MonkeyPatch):
+    known = load_all()
+    later = replace(known[0], id="later-claim", measure=None)
+    monkeypatch.setattr("handeye.thesis.reproduce.load_all", lambda: (*known, later))
+    with pytest.raises(InvalidInput, match=r"no experiment .* later-claim; it has"):
+        reproduce(["later-*"])
 
 
 def test_rows_of_one_claim_with_a_measured_interval():

@@ -11,8 +11,11 @@ from handeye.cli.catch import catch
 from handeye.cli.console import ErrorsForPeople
 from handeye.cli.convert import convert
 from handeye.cli.demo import demo
+from handeye.cli.export import export
+from handeye.cli.hand_eye import solve
 from handeye.cli.reproduce import reproduce
 from handeye.cli.simulate import simulate
+from handeye.cli.suggest import suggest
 
 app = typer.Typer(
     name="handeye",
@@ -49,7 +52,10 @@ app.command(rich_help_panel=_WATCH)(catch)
 app.command(rich_help_panel=_WATCH)(simulate)
 app.command(rich_help_panel=_OWN)(calibrate)
 app.command(rich_help_panel=_OWN)(apply)
+app.command("hand-eye", rich_help_panel=_OWN)(solve)
+app.command(rich_help_panel=_OWN)(suggest)
 app.command(rich_help_panel=_OWN)(convert)
+app.command(rich_help_panel=_OWN)(export)
 app.command(rich_help_panel=_RESEARCH)(reproduce)
 
 

@@ -2,14 +2,15 @@
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 from rich.markup import escape
 
+from handeye.calibration.exporting import calibrated_joints_yaml, calibrated_urdf, not_in_urdf
 from handeye.calibration.log_checks import check_log
-from handeye.calibration.log_run import Calibration, arm_of, calibrate_log
-from handeye.calibration.results import CalibrationResult, ErrorSummary
+from handeye.calibration.log_run import arm_of, calibrate_log
+from handeye.calibration.results import CalibrationResult
 from handeye.calibration.storage import save_model
 from handeye.cli.bags import (
     Frame,
@@ -22,10 +23,12 @@ from handeye.cli.bags import (
     read_any,
     report_data,
 )
-from handeye.cli.console import no_page, out, progress_bar, table, write_json
+from handeye.cli.calibrate_results import as_data, print_results
+from handeye.cli.console import check_places, err, no_page, progress_bar, write_json
 from handeye.cli.robot import ROBOT_HELP, load_robot
-from handeye.errors import MissingExtra
+from handeye.errors import InvalidInput, MissingExtra
 from handeye.io.bags import BagOptions
+from handeye.io.files import replace_file
 
 
 class MethodName(StrEnum):
@@ -35,6 +38,14 @@ class MethodName(StrEnum):
     network = "network"
     estimator = "estimator"
     nominal = "nominal"
+
+
+class ValidationName(StrEnum):
+    """Which rows are held out."""
+
+    blocks = "blocks"
+    random = "random"
+    none = "none"
 
 
 def calibrate(
@@ -53,23 +64,41 @@ def calibrate(
     method: Annotated[
         MethodName | None,
         typer.Option(
-            help="What learns: a model of the whole chain (planar robot only, the default there); "
-            "a network correction (the default elsewhere); an estimator of the kinematic "
-            "parameters (planar robot only); or nothing.",
+            help="What learns: a model of the whole chain (the default for the planar robot and "
+            "for arms from URDF files); a network correction (the default for others); an "
+            "estimator of the kinematic parameters (planar robot only); or nothing.",
             show_default=False,
         ),
     ] = None,
     folder: Annotated[
-        Path, typer.Option("--out", help="Folder for the model and the report page.")
+        Path,
+        typer.Option(
+            "--out", help="Folder for the model and the report page; made if there is none."
+        ),
     ] = Path("out"),
+    urdf_file: Annotated[
+        Path | None,
+        typer.Option("--urdf", help="Also write the URDF with the joints where they were found."),
+    ] = None,
+    joints_file: Annotated[
+        Path | None,
+        typer.Option("--joints-yaml", help="Also write the joints' places as YAML for xacro."),
+    ] = None,
     json_file: Annotated[
         str | None, typer.Option("--json", help="Also write the results as JSON; - prints them.")
     ] = None,
     skip_bad: Annotated[
         bool, typer.Option("--skip-bad", help="Use the good rows of a log that has bad ones.")
     ] = False,
+    validate: Annotated[
+        ValidationName,
+        typer.Option(
+            help="Which rows are held out to say how good the result is: five blocks of time, each "
+            "once; a random third, which flatters; or none, which is fastest."
+        ),
+    ] = ValidationName.blocks,
     replicate: Annotated[
-        int, typer.Option(min=0, help="Which random third of the rows is held out.")
+        int, typer.Option(min=0, help="Which third, for [bold]--validate random[/].")
     ] = 0,
     joints_topic: JointsTopic = None,
     points_topic: PointsTopic = None,
@@ -81,32 +110,53 @@ def calibrate(
 ) -> None:
     """Calibrate a robot from a log of what its eye saw of its hand.
 
-    Places the frames of sensor and marker, then learns from the rows in order, testing each before
-    learning it. A second run with a third of the rows held out says how good the result is.
-    The columns of a log are described in docs/how-to/log-format.md.
+    Places the frames of sensor and marker, then learns from the rows in order of time, testing each
+    before learning it. Then blocks of rows are held out in turn, which says how good the result is.
+    The columns of a log are described in docs/how-to/log-format.md, those of the JSON in
+    docs/reference/json.md.
     """
+    check_places(folder, json_file, *(str(f) for f in (urdf_file, joints_file) if f is not None))
     nominal = load_robot(robot, tip)
     arm = arm_of(nominal)
+    if (urdf_file or joints_file) and (robot == "planar" or method not in {None, "combined"}):
+        raise InvalidInput(
+            "--urdf and --joints-yaml need an arm from a URDF file and --method combined"
+        )
     options = BagOptions(joints_topic, points_topic, frame, marker, tolerance, delay, receipt_times)
     reading = read_any(log, options, arm=arm, skip_bad=skip_bad)
     checked = check_log(arm, reading.log, skip_bad=skip_bad)
-    with progress_bar("learning from the log", len(checked.log)) as (progress, task):
+    with progress_bar("learning, then judging", len(checked.log)) as (progress, task):
         done = calibrate_log(
             checked.log,
             nominal,
             method=None if method is None else method.value,
             rejected=(*reading.rejected, *checked.rejected),
+            validate=validate.value,
             replicate=replicate,
-            after_each=lambda n: progress.update(task, completed=n),
+            progress=lambda n, total: progress.update(task, completed=n, total=total),
         )
     result = done.result
     model = folder / f"{log.stem}.model.safetensors"
     save_model(model, done.calibrator, len(checked.log))
-    page = _page(result, folder / f"{log.stem}.html")
+    files: dict[str, Path | None] = {
+        "model": model,
+        "page": _page(result, folder / f"{log.stem}.html"),
+    }
+    for name, place, text in (
+        ("urdf", urdf_file, calibrated_urdf),
+        ("joints", joints_file, calibrated_joints_yaml),
+    ):
+        if place is not None:
+            replace_file(place, text(done.calibrator).encode())
+            files[name] = place
+    if urdf_file is not None:
+        left = ", ".join(not_in_urdf(done.calibrator))
+        err().print(f"[dim]not in the URDF[/] {escape(left)}", highlight=False, soft_wrap=True)
     if json_file is not None:
-        write_json(_as_data(result, model, page) | report_data(reading), json_file)
+        named = {name: None if path is None else str(path) for name, path in files.items()}
+        write_json(as_data(result) | named | report_data(reading), json_file)
     if json_file != "-":
-        _print(done, model, page)
+        print_results(done, files)
 
 
 def _page(result: CalibrationResult, path: Path) -> Path | None:
@@ -118,54 +168,3 @@ def _page(result: CalibrationResult, path: Path) -> Path | None:
         return None
     calibration_page(result).write(path)
     return path
-
-
-def _as_data(result: CalibrationResult, model: Path, page: Path | None) -> dict[str, Any]:
-    return {
-        "robot": result.robot,
-        "log": result.log,
-        "method": result.method,
-        "n_observations": len(result.before),
-        "n_neurons": None if result.n_neurons is None else int(result.n_neurons[-1]),
-        "n_rejected": len(result.rejected),
-        "rejected": list(result.rejected),
-        "errors": result.summary(),
-        "findings": list(result.findings),
-        "unit": "m",
-        "model": str(model),
-        "page": None if page is None else str(page),
-    }
-
-
-def _print(done: Calibration, model: Path, page: Path | None) -> None:
-    result = done.result
-    rows = {
-        "all rows, only frames placed": result.before,
-        "all rows, tested, then learned": result.online,
-    }
-    if result.held_out is not None:
-        rows["held-out third, only frames placed"] = result.held_out.before
-        rows["held-out third, others learned"] = result.held_out.after
-    shown = table(
-        f"{result.robot}: position error of the hand in mm",
-        "", "rows", "mean", "rms", "95 %", "max",
-    )  # fmt: skip
-    for name, errors in rows.items():
-        s = ErrorSummary.of(errors)
-        numbers = (f"{v * 1e3:#.3g}" for v in (s.mean, s.rms, s.p95, s.max))
-        shown.add_row(name, str(s.n), *numbers)
-    console = out()
-    console.print(shown)
-    console.print(f"frames    {escape(done.frames)}", highlight=False)
-    if result.n_neurons is not None:
-        console.print(f"neurons   {result.n_neurons[-1]}", highlight=False)
-    for i, finding in enumerate(result.findings):
-        head = "" if i else "findings"
-        console.print(f"{head:<10}{escape(finding)}", highlight=False, soft_wrap=True)
-    if result.rejected:
-        console.print(f"rejected  {len(result.rejected)} rows", highlight=False)
-        for line in result.rejected[:5]:
-            console.print(f"          {escape(line)}", highlight=False, soft_wrap=True)
-    console.print(f"model     {escape(str(model))}", highlight=False, soft_wrap=True)
-    if page is not None:
-        console.print(f"page      {escape(str(page))}", highlight=False, soft_wrap=True)

@@ -70,7 +70,11 @@ def catch(
         int | None, typer.Option(min=0, help="Tosses watched of each ball; 100 by default.")
     ] = None,
     mentored: Annotated[
-        int | None, typer.Option(min=0, help="Throws with the mentor in all; 50 by default.")
+        int | None,
+        typer.Option(
+            min=0,
+            help="Throws with the mentor in all; 50 by default, if the learner takes advice.",
+        ),
     ] = None,
     throws: Annotated[
         int, typer.Option("--test", min=1, help="Test throws of each ball to each arm.")
@@ -108,8 +112,9 @@ def catch(
 ) -> None:
     """Watch a robot learn to catch balls, from nothing.
 
-    Its arm makes random pursuits, it watches balls fly, and a mentor tells it after each throw how
-    much farther or earlier to go (chapter 4 of Ruoff 1993). Then it is tested on fresh throws.
+    Its arm makes random pursuits, it watches balls fly, and with --settings thesis, a mentor
+    tells it after each throw how much farther or earlier to go (chapter 4 of Ruoff 1993). Then it
+    is tested on fresh throws.
     Writes a page with the whole story and an animation.
     """
     changes: dict[str, Any] = {

@@ -13,7 +13,7 @@ from rich.table import Table
 from typer import Exit
 from typer.core import TyperGroup
 
-from handeye.errors import HandeyeError, MissingExtra
+from handeye.errors import HandeyeError, InvalidInput, MissingExtra
 from handeye.io.files import replace_file
 
 MISUSE = 2
@@ -71,6 +71,32 @@ def table(title: str, *columns: str, left: int = 1) -> Table:
     for i, column in enumerate(columns):
         made.add_column(column, justify="left" if i < left else "right", no_wrap=i >= left)
     return made
+
+
+def check_places(folder: Path | None, *files: str | None) -> None:
+    """Before any work: whether results can go where they are wanted.
+
+    A folder for results is made when they are written; a file must lie in a folder that exists.
+
+    Raises:
+        InvalidInput: naming the place and what is wrong with it.
+    """
+    if folder is not None:
+        above = next(place for place in (folder, *folder.absolute().parents) if place.exists())
+        if not above.is_dir():
+            raise InvalidInput(
+                f"{folder}: cannot be read or written ({above} is a file): choose another folder"
+            )
+    for file in files:
+        if file is None or file == "-":
+            continue
+        place = Path(file)
+        if place.is_dir():
+            raise InvalidInput(f"{file}: is a folder: give the name of a file")
+        if not place.absolute().parent.is_dir():
+            raise InvalidInput(
+                f"{file}: there is no folder {place.parent}: make it, or choose another place"
+            )
 
 
 def write_json(data: Any, where: str) -> None:

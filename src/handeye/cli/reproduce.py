@@ -21,7 +21,7 @@ from handeye.thesis.wording import TARGETS, apart, measured_text, sentence, stat
 
 _GOOD, _BAD = "green", "bold red"
 _STYLES = {"reproduced": _GOOD, "not reproduced": _BAD, "met": _GOOD, "not met": _BAD}
-_STYLES["not testable"] = "yellow"
+_STYLES["not testable"] = _STYLES["not run"] = "yellow"
 _HEAD = ("claim", "stated", "measured", "verdict")
 _TARGET_HEAD = ("target", "asked for", "measured", "verdict")
 _WHOLE, _PART = Path("out/reproduction"), Path("out/reproduction-part")

@@ -1,12 +1,15 @@
 """The page that tells how a calibration went."""
 
 from pathlib import Path
-from typing import NamedTuple
 
-from handeye.arrays import Array
+import numpy as np
+
 from handeye.calibration.results import CalibrationResult, ErrorSummary
+from handeye.calibration.verdict import Verdict, verdict
+from handeye.reports.calibration_parts import open_section, parts_section, rows_section
 from handeye.reports.figures import (
     error_distribution,
+    error_in_space,
     error_map,
     residuals_by_joint,
     running_error,
@@ -15,6 +18,7 @@ from handeye.reports.page import (
     FigureBlock,
     Notes,
     Page,
+    Prose,
     Section,
     StatTiles,
     Table,
@@ -24,37 +28,31 @@ from handeye.reports.page import (
 from handeye.reports.style import filled, length, length_unit, significant
 
 
-class _Verdict(NamedTuple):
-    """The rows on which the result is judged, and the errors there before and after [m]."""
-
-    joints: Array
-    positions: Array
-    before: Array
-    after: Array
-    where: str
-
-
 def calibration_page(result: CalibrationResult, *, date: str = "") -> Page:
     """Headline, numbers, pictures and settings of one run over a log.
 
-    Judged on held-out rows when there are any, else on the last third of the rows, test-then-train.
+    Judged as `verdict` says: on held-out rows, or on rows tested just before they were learned.
     Raises InvalidInput for a run without rows.
     """
     filled(result.before, "errors before learning")
     filled(result.online, "errors while learning")
-    judged = _judged(result)
-    filled(judged.after, "held-out errors after learning")
-    before, after = ErrorSummary.of(judged.before), ErrorSummary.of(judged.after)
+    if result.held_out is not None:
+        filled(result.held_out.after, "held-out errors after learning")
+    judged = verdict(result)
+    before, after = judged.summary_before, judged.summary_after
     return Page(
         title="Hand-eye calibration report",
         headline=_headline(before.mean, after.mean),
         subtitle=f"{result.robot}, from {Path(result.log).name}. Method: {result.method}.",
         sections=[
-            Section("", [_tiles(result, judged.where, before, after)]),
+            Section("", [_tiles(result, judged.where, before, after), Prose(_advice(judged))]),
             Section("In numbers", [_table(result)]),
+            *parts_section(result),
             *_findings(result),
+            *open_section(result),
             Section("Learning while working", [_running(result)]),
             Section("Where the hand misses", _places(result, judged)),
+            *rows_section(result),
             *_rejected(result),
         ],
         settings=result.settings,
@@ -68,20 +66,8 @@ def _findings(result: CalibrationResult) -> list[Section]:
     return [Section("What was found", [Notes("State of the robot", result.findings)])]
 
 
-def _judged(result: CalibrationResult) -> _Verdict:
-    held = result.held_out
-    if held is not None and len(held.rows):
-        joints, positions = result.joints[held.rows], result.positions[held.rows]
-        where = f"{len(held.rows):,} observations held out"
-        return _Verdict(joints, positions, held.before, held.after, where)
-    last = slice(len(result.before) * 2 // 3, None)
-    return _Verdict(
-        result.joints[last],
-        result.positions[last],
-        result.before[last],
-        result.online[last],
-        "last third of the run, each tested before it was learned",
-    )
+def _advice(judged: Verdict) -> str:
+    return f"{judged.advice[0].upper()}{judged.advice[1:]}."
 
 
 def _headline(before: float, after: float) -> str:
@@ -102,6 +88,8 @@ def _tiles(
         if before.mean
         else ""
     )
+    if after.interval is not None:
+        change += f", 95 % interval {_between(after)}"
     rejected = f"{len(result.rejected):,} more rejected" if result.rejected else "none rejected"
     tiles = [
         _length_tile("Mean error before", before.mean, after.mean, where, "neutral"),
@@ -110,9 +98,26 @@ def _tiles(
         ),
         Tile("Observations", f"{len(result.before):,}", note=rejected),
     ]
+    held = result.held_out
+    if held is not None and held.turns_before is not None and held.turns_after is not None:
+        was, now = (
+            float(np.degrees(ErrorSummary.of(t).mean))
+            for t in (held.turns_before, held.turns_after)
+        )
+        tone: Tone = "good" if now < was else "neutral"
+        tiles.append(
+            Tile(
+                "Mean turn after", significant(now, 2), "°", f"it was {significant(was, 2)}°", tone
+            )
+        )
     if result.n_neurons is not None:
         tiles.append(Tile("Neurons", f"{int(result.n_neurons[-1]):,}", note="in use at the end"))
     return StatTiles(tiles)
+
+
+def _between(summary: ErrorSummary) -> str:
+    low, high = summary.interval or (summary.mean, summary.mean)
+    return f"{length(low, beside=high)} to {length(high)}"
 
 
 def _length_tile(label: str, value: float, beside: float, note: str, tone: Tone) -> Tile:
@@ -132,14 +137,20 @@ def _table(result: CalibrationResult) -> Table:
     rows = [
         [_STAGES[stage], f"{numbers['n']:,}"]
         + [significant(1e3 * numbers[key], 3) for key in ("mean", "rms", "p95", "max")]
+        + [_interval(numbers["interval"])]
         for stage, numbers in result.summary().items()
     ]
+    heads = ("Position error", "Rows", "Mean [mm]", "RMS [mm]", "95 % [mm]", "Max [mm]")
     return Table(
-        columns=("Position error", "Rows", "Mean [mm]", "RMS [mm]", "95 % [mm]", "Max [mm]"),
+        columns=(*heads, "Interval of the mean [mm]"),
         rows=rows,
         caption="Distance between where the hand was seen and where it was expected.",
         emphasis=frozenset({i for i in (1, 3) if i < len(rows)}),
     )
+
+
+def _interval(interval: tuple[float, float] | None) -> str:
+    return " to ".join(significant(1e3 * end, 3) for end in interval) if interval else ""
 
 
 def _running(result: CalibrationResult) -> FigureBlock:
@@ -153,19 +164,28 @@ def _running(result: CalibrationResult) -> FigureBlock:
     )
 
 
-def _places(result: CalibrationResult, judged: _Verdict) -> list[FigureBlock]:
+def _places(result: CalibrationResult, judged: Verdict) -> list[FigureBlock]:
     names = result.joint_names
     unit = length_unit(ErrorSummary.of(judged.before).p95).name
+    positions, joints = result.positions[judged.rows], result.joints[judged.rows]
+    in_space = FigureBlock(
+        error_in_space(positions, judged.before, judged.after),
+        "The same in three dimensions: each line begins where the hand was seen and points along "
+        "the error.",
+        "Error lines in the three-dimensional workspace before and after learning.",
+    )
+    flat = np.ptp(positions[:, 2]) <= 0.02 * np.ptp(positions, axis=0).max()
     return [
         FigureBlock(
-            error_map(judged.positions, judged.before, judged.after),
+            error_map(positions, judged.before, judged.after),
             "Arrows point from where the hand was expected to where it was seen. Order among them "
             "is what a better model can remove; what is left should point every way and be short. "
             f"Rows: {judged.where}.",
             "Maps of the position error over the workspace before and after learning.",
         ),
+        *([] if flat else [in_space]),
         FigureBlock(
-            residuals_by_joint(names, judged.joints, judged.before, judged.after),
+            residuals_by_joint(names, joints, judged.before, judged.after),
             "A slope or a wave along one joint says that this joint is part of the error. Lines "
             "are medians; after learning they should lie low and flat.",
             f"Position error over the angle of each joint ({', '.join(names)}).",

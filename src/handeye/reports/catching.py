@@ -42,9 +42,7 @@ def catching_page(
     return Page(
         title="Learning to catch",
         headline=_headline(result, total),
-        subtitle="A cup on a rail and a tossed ball. The robot is told neither masses nor laws of "
-        "motion: it practised pursuits with its arm, watched balls fly, and took advice from a "
-        "mentor.",
+        subtitle=_subtitle(result),
         sections=[
             Section("", [_tiles(result, total), _moving(result, animation)]),
             Section("In numbers", [_scores(result)]),
@@ -57,6 +55,19 @@ def catching_page(
         ],
         settings=result.settings,
         date=date,
+    )
+
+
+def _subtitle(result: CatchingResult) -> str:
+    mentored = any(mark.mentored for mark in result.marks)
+    practice = (
+        "practised pursuits with its arm, watched balls fly, and took advice from a mentor"
+        if mentored
+        else "practised pursuits with its arm and watched balls fly"
+    )
+    return (
+        "A cup on a rail and a tossed ball. The robot is told neither masses nor laws of motion: "
+        f"it {practice}."
     )
 
 

@@ -9,6 +9,7 @@ from handeye.io.files import replace_file
 from handeye.reports.style import color
 from handeye.reports.svg import inline_svg
 from handeye.thesis.comparison import comparison_markdown
+from handeye.thesis.earlier import earlier_markdown
 from handeye.thesis.figures import FIGURES, Drawn, NotDrawn, drawable
 from handeye.thesis.judge import Row
 from handeye.thesis.manifest import Manifest
@@ -19,7 +20,8 @@ from handeye.thesis.wording import TARGETS, apart, kept, sentence
 
 SHOWN = (
     "3.10", "3.15", "3.21", "3.22", "3.31", "3.34", "3.37", "3.38", "3.40", "3.45", "3.51",
-    "4.1", "4.7", "4.11", "4.12", "4.14", "4.16", "6.1", "6.3", "6.4", "6.5", "6.6",
+    "4.1", "4.7", "4.11", "4.12", "4.14", "4.16", "A.6", "A.7", "A.8",
+    "6.1", "6.3", "6.4", "6.5", "6.6", "6.8", "6.9", "6.10", "6.11", "6.12", "6.13",
 )  # fmt: skip
 """Figures that the page shows; all others are on the page that the command writes."""
 
@@ -63,6 +65,8 @@ def _markdown(rows: Sequence[Row], stored: Stored, shown: Sequence[Drawn]) -> st
     ]
     if "comparison" in stored.manifest.experiments:
         parts += ["## Network or estimator?\n", comparison_markdown(stored.records)]
+    if "earlier" in stored.manifest.experiments:
+        parts += ["## Trials that learners need\n", earlier_markdown(stored.records)]
     parts.append("## Figures\n")
     parts += [_picture(figure) for figure in shown]
     return "\n".join([*parts, "## All figures\n", _all_figures()])

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Generic, NamedTuple, TypeVar
 
 from handeye.arrays import Array, count
+from handeye.thesis.real_data import real_data
 
 S = TypeVar("S")
 
@@ -35,7 +36,7 @@ FULL = Effort()
 
 @dataclass(frozen=True)
 class Experiment(Generic[S]):
-    """One question put to a simulated robot, under named settings.
+    """One question put to a simulated robot, or to measurements, under named settings.
 
     id             names it in records and claims
     settings       what is compared, by name
@@ -44,6 +45,7 @@ class Experiment(Generic[S]):
                    same world. It must be a module's function to run in other processes.
     replicates     repetitions by default
     deterministic  nothing is random: one replicate is all there is
+    needs          the folder of real measurements (`real_data`) without which it cannot run
 
     Quantities are in SI units. An experiment draws no figure and holds no result of the thesis.
     """
@@ -53,6 +55,12 @@ class Experiment(Generic[S]):
     measure: Callable[[S, int, Effort], Quantities]
     replicates: int = 20
     deterministic: bool = False
+    needs: str | None = None
+
+    @property
+    def can_run(self) -> bool:
+        """Whether what it needs is there."""
+        return self.needs is None or real_data(self.needs) is not None
 
     def repetitions(self, asked: int | None) -> int:
         """Replicates to run when so many are asked for, None for the default."""

@@ -15,7 +15,7 @@ from handeye.thesis.records import Records
 from handeye.thesis.shapes import SHAPES
 from handeye.thesis.units import scale_for, show
 
-Verdict = Literal["reproduced", "not reproduced", "met", "not met", "not testable"]
+Verdict = Literal["reproduced", "not reproduced", "met", "not met", "not testable", "not run"]
 Interval = tuple[float, float]
 
 SHARE = "fraction of replicates"
@@ -71,6 +71,11 @@ def judge(claim: Claim, records: Records, *, deterministic: bool = False) -> Row
         notes.append("One replicate: no interval.")
     verdict = _verdict(claim, agrees(claim, mean))
     return _row(claim, mean, interval, len(values), verdict, notes)
+
+
+def not_run(claim: Claim, why: str) -> Row:
+    """The row of a claim whose experiment could not be run."""
+    return _row(claim, None, None, 0, "not run", [why, claim.note])
 
 
 def agrees(claim: Claim, measured: float) -> bool:

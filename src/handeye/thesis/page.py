@@ -13,6 +13,8 @@ from handeye.reports.page import (
     Tile,
 )
 from handeye.thesis.comparison import CAPTION, comparison_table
+from handeye.thesis.earlier import CAPTION as EARLIER_CAPTION
+from handeye.thesis.earlier import earlier_table
 from handeye.thesis.figures import FIGURES, TOPICS, Drawn, NotDrawn, drawable
 from handeye.thesis.judge import Row
 from handeye.thesis.manifest import Manifest
@@ -45,6 +47,7 @@ def reproduction_page(
         Section(TARGETS, targets_blocks(targets, whole=whole)) if targets else None,
         *(_topic(name, topic, figures, records) for name, topic in TOPICS.items()),
         _comparison(records) if whole and "comparison" in manifest.experiments else None,
+        _earlier(records) if whole and "earlier" in manifest.experiments else None,
         _not_drawn() if whole else None,
     ]
     return Page(
@@ -149,6 +152,11 @@ def _comparison(records: Records) -> Section:
 
     network, estimator = part("Uncorrected", "Network"), part("Estimator")
     return Section("Network or estimator?", [Prose(CAPTION), network, estimator])
+
+
+def _earlier(records: Records) -> Section:
+    heads, rows = earlier_table(records)
+    return Section("Trials that learners need", [Prose(EARLIER_CAPTION), Table(heads, rows)])
 
 
 def _head(method: str, moment: str) -> str:

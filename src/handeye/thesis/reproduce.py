@@ -10,12 +10,13 @@ from handeye.errors import InvalidInput
 from handeye.thesis.claims import Claim, load_all
 from handeye.thesis.experiment import FULL, Effort
 from handeye.thesis.experiments import EXPERIMENTS
-from handeye.thesis.judge import Row, judge
+from handeye.thesis.judge import Row, judge, not_run
 from handeye.thesis.manifest import Manifest
+from handeye.thesis.real_data import ABSENT
 from handeye.thesis.runner import Progress, run, silent
 from handeye.thesis.storage import Stored
 
-_FIGURE = re.compile(r"(?:fig(?:ure)?s?\.?[\s_-]*)?(\d+\.\d+)", re.IGNORECASE)
+_FIGURE = re.compile(r"(?:fig(?:ure)?s?\.?[\s_-]*)?((?:\d+|[AB])\.\d+)", re.IGNORECASE)
 
 
 class Selection(NamedTuple):
@@ -61,30 +62,39 @@ def measure(
     *,
     effort: Effort = FULL,
 ) -> Stored:
-    """The records of a selection's experiments, and how they came about; see `reproduce`."""
-    experiments = [EXPERIMENTS[name] for name in chosen.experiments]
+    """The records of a selection's experiments, and how they came about; see `reproduce`.
+
+    Those whose measurements of real robots are absent are left out.
+    """
+    experiments = [one for name in chosen.experiments if (one := EXPERIMENTS[name]).can_run]
     records = run(experiments, replicates=replicates, jobs=jobs, progress=progress, effort=effort)
     return Stored(records, Manifest.of(experiments, replicates, effort))
 
 
 def verdicts(claims: Sequence[Claim], stored: Stored) -> list[Row]:
-    """The rows of claims, from records only.
+    """The rows of claims, from records only; "not run" where real measurements are absent.
 
     Raises:
         InvalidInput: the records lack what a claim needs.
     """
     there = stored.manifest.experiments
-    for claim in claims:
-        absent = [name for name in claim.experiments if name not in there]
-        if absent:
-            raise InvalidInput(
-                f"these records hold nothing of {', '.join(absent)}, which {claim.id} needs: they "
-                f"hold {', '.join(there)}"
-            )
+    absent = {name for name, one in EXPERIMENTS.items() if name not in there and not one.can_run}
     return [
-        judge(claim, stored.records, deterministic=stored.manifest.deterministic(claim.experiments))
+        not_run(claim, ABSENT) if absent.intersection(claim.experiments) else _judged(claim, stored)
         for claim in claims
     ]
+
+
+def _judged(claim: Claim, stored: Stored) -> Row:
+    ran = stored.manifest.experiments
+    missing = [name for name in claim.experiments if name not in ran]
+    if missing:
+        raise InvalidInput(
+            f"these records hold nothing of {', '.join(missing)}, which {claim.id} needs: they "
+            f"hold {', '.join(ran)}"
+        )
+    certain = stored.manifest.deterministic(claim.experiments)
+    return judge(claim, stored.records, deterministic=certain)
 
 
 def choose(names: Sequence[str] = (), stored: Stored | None = None) -> Selection:
@@ -121,7 +131,7 @@ def choose(names: Sequence[str] = (), stored: Stored | None = None) -> Selection
 def figure_number(name: str) -> str | None:
     """The number in "3.22", "fig 3.22" or "figure-3.22"; None for what names no figure."""
     found = _FIGURE.fullmatch(name.strip())
-    return found[1] if found else None
+    return found[1].upper() if found else None
 
 
 def select(ids: Sequence[str] = ()) -> list[Claim]:

@@ -7,7 +7,7 @@ from handeye.thesis.judge import SHARE, Row, Verdict
 from handeye.thesis.units import Scale, scale_for, show_interval, show_stated
 
 VERDICTS: tuple[Verdict, ...] = (
-    "reproduced", "not reproduced", "met", "not met", "not testable",
+    "reproduced", "not reproduced", "met", "not met", "not testable", "not run",
 )  # fmt: skip
 TARGETS = "Better than the thesis"
 """The name of what is aimed at beyond it."""

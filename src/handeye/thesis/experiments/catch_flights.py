@@ -9,8 +9,8 @@ import numpy as np
 
 from handeye.catching.arm import HEAVY_ARM
 from handeye.catching.layout import Layout
+from handeye.catching.movements import Pulses, execute
 from handeye.catching.play import play
-from handeye.catching.pursuit import Pulses, execute
 from handeye.catching.throws import draw_throws
 from handeye.catching.world import World
 from handeye.randomness import stream

@@ -61,8 +61,8 @@ CHANGES: dict[str, tuple[str, ...]] = {
     "replayed samples and wide neurons": (
         "arm_state", "motor_command", "ball_recognition", "ball_state", "ball_crossing",
     ),
-    "stricter comparators": ("ball_comparator", "arm_comparator"),
-    "gentle practice": ("gentle",),
+    "its own comparators": ("ball_comparator", "arm_comparator", "recognition_threshold"),
+    "gentle practice": ("gentle", "least_amplitude"),
     "repeated pursuits": ("repeated", "reach"),
     "trying every identity": ("try_all",),
     "shaking the arm first": ("excitation",),

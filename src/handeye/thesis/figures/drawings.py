@@ -59,4 +59,23 @@ DRAWINGS = [
     ),
     NotDrawn("4.17", "Closed loop with a PID controller", _PID),
     NotDrawn("4.18", "The same with the parameters of Internal Model Control", _PID),
+    NotDrawn(
+        "A.1",
+        "A biological neuron",
+        "a sketch; the activation is `handeye.networks.layered.Sigmoid`",
+    ),
+    NotDrawn("A.2", "An idealized neuron", "a diagram; it is a row of `LayeredNetwork.weights`"),
+    NotDrawn(
+        "A.3", "A recurrent and a feedforward network", "a diagram of connections, with no result"
+    ),
+    NotDrawn(
+        "A.4",
+        "A resource-allocating network",
+        "a diagram; the network is `ResourceAllocatingNetwork`",
+    ),
+    NotDrawn(
+        "A.5",
+        "Learning by allocating neurons",
+        "a sketch of the rule; the rule is `handeye.networks.kernels`",
+    ),
 ]

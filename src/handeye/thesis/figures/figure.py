@@ -54,4 +54,4 @@ def stated(claim: str) -> float:
 
 def _figures(where: str) -> list[str]:
     """The figures in a reference such as "3.5.4, figures 3.22a, 3.23"."""
-    return re.findall(r"\d+\.\d+", where.partition("figure")[2])
+    return re.findall(r"(?:\d+|[A-Z])\.\d+", where.partition("figure")[2])

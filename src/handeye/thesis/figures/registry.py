@@ -1,4 +1,4 @@
-"""Every figure of chapters 3 and 4 and those beyond the thesis (6.1 and on), by number."""
+"""Every figure of chapters 3 and 4, appendix A and beyond the thesis (6.1 and on), by number."""
 
 from collections.abc import Iterable
 
@@ -6,14 +6,18 @@ from handeye.errors import InvalidInput
 from handeye.thesis.figures.adaptation import ADAPTATION
 from handeye.thesis.figures.allocation import ALLOCATION
 from handeye.thesis.figures.catch_changes import WORTH
+from handeye.thesis.figures.catch_choices import CHOSEN
 from handeye.thesis.figures.catch_examples import EXAMPLES, RESPONSES
 from handeye.thesis.figures.catch_learning import CURVES, PREDICTION
 from handeye.thesis.figures.catch_world import PULSE, WORLD
 from handeye.thesis.figures.combined import BEYOND
 from handeye.thesis.figures.drawings import DRAWINGS
+from handeye.thesis.figures.earlier import EARLIER
 from handeye.thesis.figures.estimation import ESTIMATION
 from handeye.thesis.figures.figure import Drawn, NotDrawn
 from handeye.thesis.figures.frequency import FREQUENCY
+from handeye.thesis.figures.functions import BEGINNINGS, FUNCTIONS
+from handeye.thesis.figures.hardware import HARDWARE
 from handeye.thesis.figures.noise import NOISE
 from handeye.thesis.figures.plant import PLANT
 from handeye.thesis.figures.scenarios import SCENARIOS
@@ -32,14 +36,18 @@ TOPICS: dict[str, list[Drawn]] = {
     "Balls in flight": [*WORLD, *PREDICTION],
     "Learning to catch": [*PULSE, *CURVES, *EXAMPLES, *RESPONSES],
     "Beyond the thesis: the combined calibrator": BEYOND,
-    "Beyond the thesis: the improved catcher": WORTH,
+    "Beyond the thesis: the improved catcher": [*WORTH, *CHOSEN],
+    "Earlier hand-eye learners": EARLIER,
+    "Networks as functions": [*FUNCTIONS, *BEGINNINGS],
+    "On a chip": HARDWARE,
 }
 """The figures that are drawn, by topic."""
 
 
-def _place(figure: Drawn | NotDrawn) -> tuple[int, int]:
+def _place(figure: Drawn | NotDrawn) -> tuple[int, str, int]:
+    """Appendices come after the chapters of the thesis, and what is beyond it last."""
     chapter, _, number = figure.number.partition(".")
-    return int(chapter), int(number)
+    return int(chapter) if chapter.isdigit() else 5, chapter, int(number)
 
 
 FIGURES: dict[str, Drawn | NotDrawn] = {

@@ -13,6 +13,8 @@ from handeye.thesis.shapes.finding import Finding as Finding
 from handeye.thesis.shapes.finding import Limits as Limits
 from handeye.thesis.shapes.finding import Shape as Shape
 from handeye.thesis.shapes.finding import in_every_replicate as in_every_replicate
+from handeye.thesis.shapes.functions import FUNCTIONS
+from handeye.thesis.shapes.hardware import HARDWARE
 from handeye.thesis.shapes.plant import PLANT
 from handeye.thesis.shapes.scenarios import SCENARIOS
 from handeye.thesis.shapes.width import WIDTH
@@ -27,5 +29,7 @@ SHAPES: dict[str, Shape] = {
     **ESTIMATION,
     **CATCHING,
     **CATCH_PID,
+    **FUNCTIONS,
+    **HARDWARE,
 }
 """The predicate of every ordering and shape that can be checked, by claim."""

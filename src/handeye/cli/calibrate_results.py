@@ -1,0 +1,187 @@
+"""What `handeye calibrate` found, as data and as tables."""
+
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.markup import escape
+
+from handeye.arrays import Array, Integers
+from handeye.calibration.log_run import Calibration
+from handeye.calibration.results import CalibrationResult, ErrorSummary
+from handeye.calibration.verdict import verdict
+from handeye.cli.console import out, table
+
+_UNCHANGED = 0.05
+_WORST, _PARTS, _LISTED = 5, 8, 5
+
+
+def as_data(result: CalibrationResult) -> dict[str, Any]:
+    """Everything about a run that another program may want; docs/reference/json.md has the keys."""
+    judged = verdict(result)
+    before, after = judged.summary_before, judged.summary_after
+    turns = _turns(result)
+    held, pulled = result.held_out, result.influence
+    return {
+        "robot": result.robot,
+        "log": result.log,
+        "method": result.method,
+        "status": _status(before, after),
+        "advice": judged.advice,
+        "judged_by": judged.by,
+        "n_observations": len(result.before),
+        "n_neurons": None if result.n_neurons is None else int(result.n_neurons[-1]),
+        "n_rejected": len(result.rejected),
+        "rejected": list(result.rejected),
+        "error_before": asdict(before),
+        "error_after": asdict(after),
+        "orientation_before": None if turns is None else asdict(turns[0]),
+        "orientation_after": None if turns is None else asdict(turns[1]),
+        "errors": result.summary(),
+        "parameters": [asdict(parameter) for parameter in result.parameters],
+        "parts": [asdict(part) for part in result.parts],
+        "undetermined": list(result.undetermined),
+        "findings": list(result.findings),
+        "changed_at_row": _row(result, result.since) if result.since else None,
+        "drifting": result.drifting,
+        "validation": None
+        if held is None
+        else {
+            "how": held.how,
+            "row": _rows(result, held.rows),
+            "part": held.parts.tolist(),
+            "moves": [] if held.moves is None else held.moves.tolist(),
+        },
+        "influence": None
+        if pulled is None
+        else {
+            "row": _rows(result, np.arange(len(result.before))),
+            "residual": _numbers(pulled.residual),
+            "times_expected": _numbers(pulled.times),
+            "left_out": pulled.left_out.tolist(),
+        },
+        "unit": "m",
+    }
+
+
+def print_results(done: Calibration, files: dict[str, Any]) -> None:
+    """Tables and findings for a person, and where the files are."""
+    result, console = done.result, out()
+    _print_errors(result, console)
+    _say(console, "advice", [verdict(result).advice])
+    _say(console, "frames", [done.frames])
+    if result.n_neurons is not None:
+        _say(console, "neurons", [str(result.n_neurons[-1])])
+    _print_parts(result, console)
+    _say(console, "findings", result.findings)
+    _say(console, "open", result.undetermined[:_LISTED])
+    if len(result.undetermined) > _LISTED:
+        more = len(result.undetermined) - _LISTED
+        _say(console, "", [f"and {more} more that the poses leave to ordinary tolerances"])
+    _print_influence(result, console)
+    if result.rejected:
+        _say(console, "rejected", [f"{len(result.rejected)} rows", *result.rejected[:_LISTED]])
+    for name, path in files.items():
+        if path is not None:
+            _say(console, name, [str(path)])
+
+
+def _print_errors(result: CalibrationResult, console: Console) -> None:
+    held = result.held_out
+    alike = None if held is None else held.alike
+    rows: dict[str, tuple[Array, Integers | None]] = {
+        "all rows, nominal robot": (result.before, None),
+        "all rows, tested, then learned": (result.online, None),
+    }
+    if held is not None:
+        which = "blocks held out" if held.how == "blocks" else "third held out"
+        rows[f"{which}, nominal robot"] = (held.before, alike)
+        rows[f"{which}, others learned"] = (held.after, alike)
+    judged = verdict(result)
+    if judged.by == "online":
+        rows["last rows, tested, then learned"] = (judged.after, judged.alike)
+    shown = table(
+        f"{result.robot}: position error of the hand in mm",
+        "", "rows", "mean", "95 % interval", "rms", "95 %", "max",
+    )  # fmt: skip
+    for name, (errors, parts) in rows.items():
+        shown.add_row(name, *_cells(ErrorSummary.of(errors, parts), 1e3))
+    turns = _turns(result)
+    if held is not None and turns is not None:
+        shown.add_section()
+        for name, summary in zip(list(rows)[2:4], turns, strict=True):
+            shown.add_row(f"{name}, in degrees", *_cells(summary, 1.0))
+    console.print(shown)
+
+
+def _cells(s: ErrorSummary, scale: float) -> list[str]:
+    between = ""
+    if s.interval is not None:
+        between = " to ".join(f"{scale * end:#.3g}" for end in s.interval)
+    rms, p95, most = (f"{scale * v:#.3g}" for v in (s.rms, s.p95, s.max))
+    return [str(s.n), f"{scale * s.mean:#.3g}", between, rms, p95, most]
+
+
+def _print_parts(result: CalibrationResult, console: Console) -> None:
+    if not result.parts:
+        return
+    shown = table(
+        "Which part was off, and by how much",
+        "part", "its most changed number", "moves the hand [mm]", "known", left=2,
+    )  # fmt: skip
+    for part in result.parts[:_PARTS]:
+        number = f"{part.unknown} {part.change:+.3g} ± {part.std:.2g} {part.unit}".rstrip()
+        shown.add_row(part.part, number, f"{1e3 * part.moves:#.3g}", f"{part.known:.0%}")
+    console.print(shown)
+    if len(result.parts) > _PARTS:
+        _say(console, "", [f"and {len(result.parts) - _PARTS} more parts, which move it less"])
+
+
+def _print_influence(result: CalibrationResult, console: Console) -> None:
+    pulled = result.influence
+    if pulled is None:
+        return
+    shown = table(
+        "Rows to look at first", "row", "time in s", "error in mm", "times the ordinary", "",
+        left=0,
+    )  # fmt: skip
+    for i in pulled.worst(_WORST).tolist():
+        time = "" if result.times is None else f"{result.times[i]:.6g}"
+        said = "not believed" if pulled.left_out[i] else ""
+        numbers = f"{1e3 * pulled.residual[i]:#.3g}", f"{pulled.times[i]:.1f}"
+        shown.add_row(str(_row(result, i)), time, *numbers, said)
+    console.print(shown)
+
+
+def _say(console: Console, head: str, lines: list[str] | tuple[str, ...]) -> None:
+    for i, line in enumerate(lines):
+        console.print(f"{'' if i else head:<10}{escape(line)}", highlight=False, soft_wrap=True)
+
+
+def _status(before: ErrorSummary, after: ErrorSummary) -> str:
+    if after.mean < (1.0 - _UNCHANGED) * before.mean:
+        return "improved"
+    return "unchanged" if after.mean <= (1.0 + _UNCHANGED) * before.mean else "worse"
+
+
+def _turns(result: CalibrationResult) -> tuple[ErrorSummary, ErrorSummary] | None:
+    """Orientation errors of held-out rows in degrees, before and after."""
+    held = result.held_out
+    if held is None or held.turns_before is None or held.turns_after is None:
+        return None
+    pair = (np.degrees(held.turns_before), np.degrees(held.turns_after))
+    return ErrorSummary.of(pair[0], held.alike), ErrorSummary.of(pair[1], held.alike)
+
+
+def _row(result: CalibrationResult, index: int) -> int:
+    return index if result.rows is None else int(result.rows[index])
+
+
+def _rows(result: CalibrationResult, indices: Integers) -> list[int]:
+    return [_row(result, i) for i in indices.tolist()]
+
+
+def _numbers(values: Array) -> list[float | None]:
+    """JSON knows no nan."""
+    return [None if np.isnan(value) else float(value) for value in values]

@@ -1,0 +1,137 @@
+"""`handeye suggest`: which poses to add."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from rich.markup import escape
+
+from handeye.calibration.combined import Combined
+from handeye.calibration.log_checks import check_log
+from handeye.calibration.log_run import arm_of, calibrate_log
+from handeye.calibration.placed_arm import PlacedArm
+from handeye.calibration.storage import load_model
+from handeye.calibration.suggesting import SuggestedPoses, suggest_poses
+from handeye.cli.bags import read_any
+from handeye.cli.console import check_places, err, out, progress_bar, table, write_json
+from handeye.cli.robot import ROBOT_HELP, load_robot
+from handeye.errors import InvalidInput
+from handeye.io.bags import BagOptions
+from handeye.io.targets import write_commands
+
+_MODEL = ".safetensors"
+
+
+def suggest(
+    source: Annotated[
+        Path,
+        typer.Argument(
+            help="Calibrated model that `handeye calibrate` saved, or a log or recording.",
+            show_default=False,
+        ),
+    ],
+    robot: Annotated[
+        str | None, typer.Option(help=f"Of a log: {ROBOT_HELP}", show_default=False)
+    ] = None,
+    tip: Annotated[
+        str | None, typer.Option(help="Link of the URDF that carries the marker.")
+    ] = None,
+    n: Annotated[int, typer.Option("-n", min=1, help="How many poses.")] = 5,
+    wider: Annotated[
+        bool,
+        typer.Option(
+            "--wider",
+            help="Also poses outside the range in which the joints have worked, where the marker "
+            "stays in the space in which it was seen.",
+        ),
+    ] = False,
+    target_file: Annotated[
+        Path | None, typer.Option("--out", help="CSV file for the joints.")
+    ] = None,
+    json_file: Annotated[
+        str | None, typer.Option("--json", help="Also write the poses as JSON; - prints them.")
+    ] = None,
+    skip_bad: Annotated[
+        bool, typer.Option("--skip-bad", help="Use the good rows of a log that has bad ones.")
+    ] = False,
+) -> None:
+    """Say which poses to add, so that the hand becomes more certain everywhere it works.
+
+    Each pose is the one that helps most, given the ones before. Poses keep the joints' limits;
+    whether something stands in the way is not known here.
+    """
+    check_places(None, json_file, None if target_file is None else str(target_file))
+    calibrator, names = _calibrator(source, robot, tip, skip_bad=skip_bad)
+    if not isinstance(calibrator, Combined):
+        raise InvalidInput(
+            f"{source}: a {type(calibrator).__name__} does not know how certain it is, so it "
+            "cannot suggest poses: calibrate with --method combined"
+        )
+    found = suggest_poses(calibrator, n, wider=wider)
+    if target_file is not None:
+        write_commands(target_file, names, found.joints)
+        err().print(f"{n} poses -> {escape(str(target_file))}", highlight=False)
+    if json_file is not None:
+        write_json(_as_data(names, found, calibrator), json_file)
+    if json_file != "-":
+        _print(names, found, calibrator)
+
+
+def _calibrator(
+    source: Path, robot: str | None, tip: str | None, *, skip_bad: bool
+) -> tuple[Any, tuple[str, ...]]:
+    if source.suffix == _MODEL:
+        calibrator: Any = load_model(source).calibrator
+        model = calibrator.model
+        arm = model.arm if isinstance(model, PlacedArm) else model.nominal.arm
+        return calibrator, arm.joint_names
+    if robot is None:
+        raise InvalidInput(f"{source}: a log needs --robot; a model ends in {_MODEL}")
+    nominal = load_robot(robot, tip)
+    arm = arm_of(nominal)
+    reading = read_any(source, BagOptions(), arm=arm, skip_bad=skip_bad)
+    checked = check_log(arm, reading.log, skip_bad=skip_bad)
+    with progress_bar("learning from the log", len(checked.log)) as (progress, task):
+        done = calibrate_log(
+            checked.log,
+            nominal,
+            method="combined",
+            validate="none",
+            progress=lambda k, total: progress.update(task, completed=k, total=total),
+        )
+    return done.calibrator, arm.joint_names
+
+
+def _points(found: SuggestedPoses) -> bool:
+    """Whether the eye can point beside the hand."""
+    return bool(np.any(found.eccentricity))
+
+
+def _as_data(names: tuple[str, ...], found: SuggestedPoses, calibrator: Combined) -> dict[str, Any]:
+    known = calibrator.knowledge()
+    return {
+        "joint_names": list(names),
+        "joints": found.joints.tolist(),
+        "eccentricity": found.eccentricity.tolist() if _points(found) else None,
+        "uncertainty_before": found.before,
+        "uncertainty_after": found.after.tolist(),
+        "undetermined": list(known.undetermined),
+        "unit": "rad, m",
+    }
+
+
+def _print(names: tuple[str, ...], found: SuggestedPoses, calibrator: Combined) -> None:
+    console = out()
+    heads = [*(f"{name} [°]" for name in names), *(["beside the hand [°]"] * _points(found))]
+    shown = table(
+        f"Poses to add: the hand is now known to {1e3 * found.before:.3g} mm",
+        "", *heads, "then known to [mm]", left=0,
+    )  # fmt: skip
+    for i, joints in enumerate(np.degrees(found.joints)):
+        beside = [f"{np.degrees(found.eccentricity[i]):.1f}"] if _points(found) else []
+        known = f"{1e3 * found.after[i]:#.3g}"
+        shown.add_row(str(i + 1), *(f"{angle:.1f}" for angle in joints), *beside, known)
+    console.print(shown)
+    for line in calibrator.knowledge().undetermined[:5]:
+        console.print(f"open      {escape(line)}", highlight=False, soft_wrap=True)

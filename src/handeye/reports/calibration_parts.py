@@ -1,0 +1,83 @@
+"""Parts of the calibration page that name things: parts of the robot, rows, open directions."""
+
+from handeye.calibration.results import CalibrationResult
+from handeye.reports.page import Badge, Notes, Section, Table
+from handeye.reports.style import significant
+
+_PARTS, _ROWS = 12, 8
+
+
+def parts_section(result: CalibrationResult) -> list[Section]:
+    """Which part of the robot was off, and by how much."""
+    if not result.parts:
+        return []
+    rows = [
+        [
+            part.part,
+            significant(1e3 * part.moves, 3),
+            f"{100 * part.known:.0f} %",
+            part.unknown,
+            f"{part.change:+.3g} ± {part.std:.2g} {part.unit}".rstrip(),
+        ]
+        for part in result.parts[:_PARTS]
+    ]
+    left = len(result.parts) - len(rows)
+    more = f" {left} more parts move it less." if left else ""
+    return [
+        Section(
+            "Which part was off",
+            [
+                Table(
+                    ("Part", "Moves the hand [mm]", "Known", "Its most changed number", "Change"),
+                    rows,
+                    caption="How far the change of each part moves the hand, root mean square over "
+                    "the rows, and how much of what was unknown of it the rows have told. Parts "
+                    f"that rows can hardly tell apart may move it far in opposite ways.{more}",
+                    words=frozenset({0, 3}),
+                )
+            ],
+        )
+    ]
+
+
+def open_section(result: CalibrationResult) -> list[Section]:
+    """What the poses do not determine."""
+    if not result.undetermined:
+        return []
+    n = len(result.undetermined)
+    title = (
+        "The poses of this log leave these open, so that ordinary tolerances decide. Ask "
+        "handeye suggest for poses to add"
+    )
+    return [Section("What is not determined", [Notes(title, result.undetermined, folded=n > 8)])]
+
+
+def rows_section(result: CalibrationResult) -> list[Section]:
+    """The rows that fit the others least."""
+    pulled = result.influence
+    if pulled is None:
+        return []
+    rows: list[list[str | Badge]] = []
+    for i in pulled.worst(_ROWS).tolist():
+        said = Badge("not believed", "bad") if pulled.left_out[i] else Badge("used")
+        rows.append(
+            [
+                str(i if result.rows is None else result.rows[i]),
+                "" if result.times is None else f"{result.times[i]:.6g}",
+                significant(1e3 * float(pulled.residual[i]), 3),
+                significant(float(pulled.times[i]), 2),
+                said,
+            ]
+        )
+    caption = (
+        "The rows that fit least, each by the error that a calibrator makes there which has not "
+        "seen it, where rows were held out. An ordinary row has 1; look at those far above."
+    )
+    if result.held_out is not None and result.held_out.moves is not None:
+        moves = 1e3 * float(result.held_out.moves.max())
+        caption += (
+            f" Without any one of the parts held out, predictions move by {significant(moves, 2)} "
+            "mm at most, in the mean over the rows."
+        )
+    heads = ("Row", "Time [s]", "Error [mm]", "Times the ordinary", "")
+    return [Section("Rows to look at first", [Table(heads, rows, caption, words=frozenset({4}))])]
