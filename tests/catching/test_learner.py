@@ -49,10 +49,10 @@ def test_an_arm_is_learned_by_table_4_1():
     # Voltage, velocity -> the way to the next tick, velocity and force there; before it began, rest
     # stayed rest.
     resting = np.zeros((ARM_RECOGNITION.reach, 2))
-    np.testing.assert_allclose(state.inputs, [*resting, [0.5, 0.0], [0.5, 1.6]])
+    np.testing.assert_allclose(state.inputs, np.vstack([resting, [[0.5, 0.0], [0.5, 1.6]]]))
     np.testing.assert_allclose(
         state.outputs,
-        [*np.zeros((len(resting), 3)), [0.02, 1.6, 3.0], [0.04, 1.5, 2.0]],
+        np.vstack([np.zeros((len(resting), 3)), [[0.02, 1.6, 3.0], [0.04, 1.5, 2.0]]]),
         atol=1e-12,
     )
     assert learner.pursuits == [0, 1]

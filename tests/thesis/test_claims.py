@@ -69,8 +69,7 @@ def test_measured_orderings_and_shapes_are_exactly_those_with_a_predicate():
 def test_claims_name_experiments_and_every_experiment_serves_a_claim_or_a_drawing():
     drawings = {
         "distortions", "comparison", "catch-flights", "catch-changes", "combined-misfit",
-            "catch-choices", "catch-delay",
-        "paired-series", "influence",
+        "catch-choices", "catch-delay", "paired-series", "influence", "earlier", "real-ur10-order",
     }  # fmt: skip
     claimed = {name for claim in MEASURED for name in claim.experiments}
     assert claimed | drawings == set(EXPERIMENTS)

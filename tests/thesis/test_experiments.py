@@ -34,7 +34,9 @@ def test_every_experiment_measures_finite_numbers_under_every_setting(smoke: Rec
 
 def test_every_experiment_has_twenty_replicates_or_is_deterministic():
     for name, experiment in EXPERIMENTS.items():
-        least = 10 if name.startswith("catch") else 20
+        usual = 10 if name.startswith("catch") else 20
+        # Five splits were asked for; the other two are studies of sensitivity.
+        least = {"real-ur10": 5, "catch-choices": 6, "catch-delay": 6}.get(name, usual)
         assert experiment.deterministic or experiment.replicates >= least, name
 
 

@@ -33,9 +33,6 @@ def test_claims_come_once_and_in_the_order_of_the_thesis():
 
 
 def test_patterns_pass_over_claims_that_cannot_be_measured_yet():
-    beginning_so = [claim for claim in load_all() if claim.id.startswith("paired-")]
-    assert beginning_so
-    assert not any(claim.measure for claim in beginning_so)
     assert ids("p*") == [c.id for c in load_all() if c.id.startswith("p") and c.measure]
 
 
