@@ -33,7 +33,7 @@ from rich.progress import Progress
 from rich.table import Table
 
 from handeye.networks import CMAC, GradientDescent, InputSpace, ResourceAllocatingNetwork
-from handeye.networks.recursive import RecursiveNetwork
+from handeye.networks.recursive import KalmanNetwork, RecursiveNetwork
 from handeye.networks.recursive.evidence import Relevance, relevance
 
 UNITS = 1000
@@ -61,10 +61,23 @@ def _log_gp(m: int, points: int, found: Relevance | None, d: int) -> LogGP:
     return LogGP(scales, 1.0, ratio, m, points, 10_000)
 
 
+def _kalman(m: int, scales: np.ndarray, units: int = UNITS, **settings: Any) -> KalmanNetwork:
+    space = InputSpace.scaled(scales)
+    return KalmanNetwork(len(scales), m, inputs=space, capacity=units, **settings)
+
+
+ONLY_WEIGHTS: dict[str, Any] = {"shape_deviation": 0.0, "scale_deviation": 0.0}
+
+
 CONTESTANTS: dict[str, Make] = {
     "recursive": lambda d, m, *_: RecursiveNetwork(d, m, capacity=UNITS),
     "recursive, blocks of 500": lambda d, m, *_: RecursiveNetwork(d, m, capacity=UNITS, block=500),
     "recursive, blocks of 250": lambda d, m, *_: RecursiveNetwork(d, m, capacity=UNITS, block=250),
+    "Kalman": lambda d, m, *_: KalmanNetwork(d, m, capacity=UNITS),
+    "Kalman, evidence": lambda _, m, *first: _kalman(m, relevance(*first).scales),
+    "Kalman, evidence, only weights": lambda _, m, *first: _kalman(
+        m, relevance(*first).scales, **ONLY_WEIGHTS
+    ),
     "1993, virtual neuron": lambda d, m, *_: _ran(d, m, np.ones(d)),
     "1993, CMAC rule": lambda d, m, *_: _ran(d, m, np.ones(d), adaptation=CMAC()),
     "1993, gradient": lambda d, m, *_: _ran(d, m, np.ones(d), adaptation=GradientDescent()),
@@ -79,6 +92,15 @@ CONTESTANTS: dict[str, Make] = {
     "river, Hoeffding tree": lambda _, m, *__: River(m, "tree"),
     "xcsf, 1,000 rules": lambda d, m, x, _: XCSF(d, m, x, 0.2),
 }
+
+FEW: dict[str, Make] = {
+    "Kalman, scales as they were": lambda d, m, *_: _kalman(m, _usual(d), scale_deviation=0.0),
+    "Kalman 300, evidence": lambda _, m, *first: _kalman(m, relevance(*first).scales, 300),
+    "Kalman 300, evidence, only weights": lambda _, m, *first: _kalman(
+        m, relevance(*first).scales, 300, **ONLY_WEIGHTS
+    ),
+}
+"""What moving neurons and scales is worth: run only when named."""
 
 
 def score(contestant: Contestant, stream: Stream) -> float:
@@ -95,7 +117,7 @@ def run(name: str, stream_name: str, stream: Stream, replicate: int) -> Row:
     d, m = stream.x.shape[1], stream.y.shape[1]
     first = stream.x[:FIRST], stream.y[:FIRST]
     begun = time.process_time()
-    contestant = CONTESTANTS[name](d, m, *first)
+    contestant = (CONTESTANTS | FEW)[name](d, m, *first)
     contestant.learn_many(*first)
     started = time.process_time()
     contestant.learn_many(stream.x[FIRST:], stream.y[FIRST:])
@@ -143,7 +165,7 @@ def table(rows: list[Row]) -> Table:
     for name in streams:
         shown.add_column(name, justify="right")
     best = {s: min(v[0] for k, v in values.items() if k[1] == s) for s in streams}
-    for name in CONTESTANTS:
+    for name in CONTESTANTS | FEW:
         if not any(key[0] == name for key in values):
             continue
         cells: list[str] = []

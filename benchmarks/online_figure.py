@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 # Colour says whose it is, and a letter which.
 FAMILIES = {
     "recursive": ("#00796b", "o"),
+    "Kalman": ("#c2185b", "P"),
     "1993": ("#e65100", "s"),
     "Fourier": ("#3949ab", "^"),
     "LoG-GP": ("#8e24aa", "D"),

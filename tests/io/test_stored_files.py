@@ -104,7 +104,8 @@ def test_metadata_that_is_not_as_written_is_refused(tmp_path, change):
     write_tensors(path, "kind", 3, ARRAYS, HEADER)
     with safe_open(path, framework="numpy") as stored:
         metadata = {k: v for k, v in (stored.metadata() | change).items() if v is not None}
-        save_file({name: stored.get_tensor(name) for name in stored.keys()}, path, metadata)  # noqa: SIM118
+        names = list(stored.keys())
+        save_file({name: stored.get_tensor(name) for name in names}, path, metadata)
     with pytest.raises(FileFormatError, match="file: damaged"):
         read(path)
 

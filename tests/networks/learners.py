@@ -5,11 +5,9 @@ suite lie in [-1, 1]^d, targets within about [-1, 1]^m; any d and m will do.
 """
 
 from collections.abc import Callable
-from os import PathLike
-from typing import Any, NamedTuple, Protocol, Self
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from safetensors import safe_open
 
 from handeye.arrays import Array
@@ -17,6 +15,7 @@ from handeye.networks import (
     CMAC,
     FixedPoint,
     HardwareNetwork,
+    Learner,
     ResourceAllocatingNetwork,
     VirtualNeuron,
 )
@@ -28,33 +27,7 @@ from handeye.networks.layered import (
     gaussian_network,
 )
 from handeye.networks.memories import AlbusCMAC, SigmaPi, monomials
-from handeye.networks.recursive import RecursiveNetwork
-
-
-class Learner(Protocol):
-    """The two verbs and what goes with them."""
-
-    @property
-    def n_inputs(self) -> int: ...
-
-    @property
-    def n_outputs(self) -> int: ...
-
-    def predict(self, x: ArrayLike) -> Array: ...
-
-    def predict_many(self, x: ArrayLike) -> Array: ...
-
-    def learn(self, x: ArrayLike, target: ArrayLike) -> Any:
-        """Returns a NamedTuple with at least `error`, target - output before learning, (m,)."""
-        ...
-
-    def learn_many(self, x: ArrayLike, target: ArrayLike) -> Any:
-        """Returns a NamedTuple of the same fields, each with a leading axis."""
-        ...
-
-    def copy(self) -> Self: ...
-
-    def save(self, path: str | PathLike[str]) -> None: ...
+from handeye.networks.recursive import KalmanNetwork, RecursiveNetwork
 
 
 class Case(NamedTuple):
@@ -147,6 +120,14 @@ EVERY = [
         lambda _: RecursiveNetwork(2, 2, capacity=12, prune_tolerance=0.05, relevance_samples=None),
         RecursiveNetwork.load,
     ),
+    Case("Kalman", lambda _: KalmanNetwork(2, 3, capacity=20), KalmanNetwork.load),
+    Case(
+        "Kalman, full and pruned",
+        lambda _: KalmanNetwork(
+            3, 1, capacity=6, neighbours=3, forgetting=0.98, prune_tolerance=0.3
+        ),
+        KalmanNetwork.load,
+    ),
 ]
 
 
@@ -163,6 +144,7 @@ def state(learner: Learner, folder: Any) -> dict[str, Any]:
     """Everything that the learner would store, to the bit."""
     path = folder / "state"
     learner.save(path)
+    # safetensors does not declare that it is a context manager.
     with safe_open(path, framework="numpy") as tensors:  # pyright: ignore[reportGeneralTypeIssues]
         names = list(tensors.keys())
         arrays = {name: tensors.get_tensor(name).tobytes() for name in names}

@@ -1,5 +1,7 @@
 """Small networks and streams, shared by the tests of the network."""
 
+import os
+
 import numpy as np
 
 from handeye.networks import InputSpace, ResourceAllocatingNetwork
@@ -12,6 +14,11 @@ def make(kinds=None, **settings):
         settings |= kinds._asdict()
     space = InputSpace(*np.array([[-1, 0], [1, 3], [1.0, 2.0]]))
     return ResourceAllocatingNetwork(D_IN, D_OUT, inputs=space, **settings)
+
+
+def fewer(n, plain):
+    """n samples, or `plain` of them with compilation off, where each takes milliseconds."""
+    return plain if os.environ.get("NUMBA_DISABLE_JIT") == "1" else n
 
 
 def stream(seed, n):

@@ -1,5 +1,7 @@
 """What every learner promises: one suite over the table of tests/networks/learners.py."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from safetensors.numpy import save_file
@@ -15,11 +17,16 @@ def case(request):
     return request.param
 
 
-@pytest.fixture
-def learned(case: Case):
+@cache
+def taught(case: Case):
     learner = case.make(0)
     learner.learn_many(*samples(learner, 0, N))
     return learner
+
+
+@pytest.fixture
+def learned(case: Case):
+    return taught(case).copy()
 
 
 def test_names_are_different():

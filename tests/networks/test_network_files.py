@@ -11,8 +11,9 @@ from safetensors.numpy import load_file, save_file
 
 from handeye.errors import FileFormatError, InvalidInput
 from handeye.io.tensors import _digest, write_tensors
-from handeye.networks import GradientDescent, InputSpace, ResourceAllocatingNetwork, storage
+from handeye.networks import GradientDescent, InputSpace, ResourceAllocatingNetwork
 
+FORMAT, VERSION = ResourceAllocatingNetwork.FORMAT, ResourceAllocatingNetwork.VERSION
 SPACE = InputSpace(*np.array([[-1, 0], [1, 3], [1.0, 2.0]]))
 
 
@@ -24,7 +25,7 @@ def make(n: Any = 12, **settings: Any):
 
 
 def state(network):
-    arrays, rest = storage.to_arrays(network)
+    arrays, rest = network.parts()
     return {name: a.tobytes() for name, a in arrays.items()}, rest, network.settings
 
 
@@ -43,9 +44,9 @@ def assert_refused(path, match="."):
 
 def forge(path, change):
     """A file that is well formed, with `change` made to its arrays and its header."""
-    arrays, rest = storage.to_arrays(make())
+    arrays, rest = make().parts()
     change(arrays, rest)
-    write_tensors(path, storage.FORMAT, storage.VERSION, arrays, rest)
+    write_tensors(path, FORMAT, VERSION, arrays, rest)
 
 
 @pytest.mark.parametrize("capacity", [None, 5, 200])
@@ -110,18 +111,18 @@ def test_foreign_files_are_refused(stored, content):
 @pytest.mark.parametrize("metadata", [None, {"format": "pt"}, {"format": "handeye.model"}])
 def test_foreign_safetensors_are_refused(stored, metadata):
     save_file({"weight": np.ones((2, 2), np.float32)}, stored, metadata)
-    assert_refused(stored, "not a stored handeye network")
+    assert_refused(stored, "not a stored ResourceAllocatingNetwork")
 
 
 def test_a_newer_file_asks_for_an_update(stored):
-    arrays, rest = storage.to_arrays(make())
-    write_tensors(stored, storage.FORMAT, storage.VERSION + 1, arrays, rest)
+    arrays, rest = make().parts()
+    write_tensors(stored, FORMAT, VERSION + 1, arrays, rest)
     assert_refused(stored, "newer handeye.*update handeye")
 
 
 @pytest.mark.parametrize("version", ["", "one", "1.5"])
 def test_a_version_that_is_no_number_is_refused(stored, version):
-    write(stored, version, json.dumps(storage.to_arrays(make())[1]))
+    write(stored, version, json.dumps(make().parts()[1]))
     assert_refused(stored)
 
 
@@ -133,9 +134,9 @@ def test_a_header_without_a_network_is_refused(stored, header):
 
 def write(path, version, text):
     """The arrays of a network under this version and text of a header, with the right digest."""
-    arrays, _ = storage.to_arrays(make())
+    arrays, _ = make().parts()
     arrays = {name: np.ascontiguousarray(array) for name, array in arrays.items()}
-    metadata = {"format": storage.FORMAT, "version": version, "header": text}
+    metadata = {"format": FORMAT, "version": version, "header": text}
     save_file(arrays, path, {**metadata, "sha256": _digest(arrays, text)})
 
 
@@ -206,7 +207,7 @@ def test_parts_that_make_no_working_network_are_refused(stored, change):
 def test_the_forger_can_also_write_a_good_file(stored):
     forge(stored, lambda *_: None)
     assert state(ResourceAllocatingNetwork.load(stored)) == state(make())
-    write(stored, "1", json.dumps(storage.to_arrays(make())[1]))
+    write(stored, "1", json.dumps(make().parts()[1]))
     assert state(ResourceAllocatingNetwork.load(stored)) == state(make())
 
 

@@ -15,7 +15,6 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from handeye.arrays import Array, Integers
-from handeye.errors import LogError
 from handeye.io import columns as col
 from handeye.io.records import BadRow, usable
 from handeye.io.tables import read_table
@@ -50,11 +49,7 @@ def read_pairs(path: Path | str, *, skip_bad: bool = False) -> PosePairs:
     table = read_table(Path(path))
     groups = [_columns(prefix) for prefix in (FLANGE, TARGET)]
     names = [name for group in groups for name in group]
-    missing = [name for name in names if name not in table.columns]
-    if missing:
-        hints = [hint for name in missing if (hint := col.near_name(name, table.columns))]
-        lines = [f"{path}: missing columns: {', '.join(missing)}", *hints]
-        raise LogError("\n  ".join([*lines, f"found: {', '.join(table.columns)}"]))
+    table.require(names)
     values = table.numbers(names)
     for group in groups:
         norm = np.linalg.norm([values[name] for name in group[3:]], axis=0)

@@ -12,6 +12,7 @@ import numpy as np
 
 from handeye.arrays import Array, Integers
 from handeye.errors import LogError, MissingExtra
+from handeye.io.columns import near_name
 from handeye.io.records import BadRow
 
 _PARQUET_MAGIC = b"PAR1"
@@ -29,6 +30,18 @@ class Table:
     columns: Mapping[str, Sequence[object]]
     rows: Integers
     bad: dict[int, BadRow] = field(default_factory=dict[int, BadRow])
+
+    def require(self, names: Sequence[str]) -> None:
+        """Refuse a table that lacks some of these columns.
+
+        Raises:
+            LogError: with what is missing, columns of similar names, and what there is.
+        """
+        missing = [name for name in names if name not in self.columns]
+        if missing:
+            hints = [hint for name in missing if (hint := near_name(name, self.columns))]
+            lines = [f"{self.file}: missing columns: {', '.join(missing)}", *hints]
+            raise LogError("\n  ".join([*lines, f"found: {', '.join(self.columns)}"]))
 
     def reject(self, row: int, problem: str, remedy: str) -> None:
         """Note what is wrong with a row, unless something already is."""

@@ -76,11 +76,7 @@ def _together(values: dict[str, Array], names: Sequence[str]) -> Array:
 
 def _numbers(path: Path, names: Sequence[str]) -> dict[str, Array]:
     table = read_table(path)
-    missing = [name for name in names if name not in table.columns]
-    if missing:
-        hints = [hint for name in missing if (hint := col.near_name(name, table.columns))]
-        lines = [f"{path}: missing columns: {', '.join(missing)}", *hints]
-        raise LogError("\n  ".join([*lines, f"found: {', '.join(table.columns)}"]))
+    table.require(names)
     values = table.numbers(names)
     if table.bad:
         first = next(iter(table.bad.values()))

@@ -2,9 +2,10 @@
 
 import hashlib
 import json
+from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from safetensors import SafetensorError, safe_open
@@ -15,6 +16,10 @@ from handeye.errors import FileFormatError
 from handeye.io.files import replace_file
 
 Header = dict[str, Any]
+Parts = tuple[dict[str, Array], Header]
+"""What a file holds: arrays by name, and the JSON-able rest."""
+
+T = TypeVar("T")
 
 
 def write_tensors(
@@ -24,7 +29,13 @@ def write_tensors(
     arrays: dict[str, Array],
     header: Header,
 ) -> None:
-    """Write a file of `kind`; an old one is replaced only once the new one is complete."""
+    """Write a file of `kind`, such as "handeye.network"; an old one is replaced at the very end.
+
+    `header` is whatever JSON can hold. The file is in the format safetensors; kind, version, header
+    and a SHA-256 of everything stand in its metadata.
+
+    Raises OSError as the operating system gives it, TypeError for a header that JSON cannot hold.
+    """
     text = json.dumps(header)
     contiguous: Any = {name: np.ascontiguousarray(a) for name, a in arrays.items()}
     metadata = {
@@ -36,9 +47,7 @@ def write_tensors(
     replace_file(path, to_bytes(contiguous, metadata=metadata))
 
 
-def read_tensors(
-    path: str | PathLike[str], kind: str, version: int, title: str
-) -> tuple[dict[str, Array], Header]:
+def read_tensors(path: str | PathLike[str], kind: str, version: int, title: str) -> Parts:
     """Read what `write_tensors` wrote; `title` names the kind of file for a person.
 
     Raises:
@@ -64,6 +73,33 @@ def read_tensors(
             return arrays, json.loads(metadata["header"])
     except (SafetensorError, KeyError, TypeError, ValueError, OSError) as error:
         raise FileFormatError(f"{file}: damaged, or not {title} ({error})") from error
+
+
+def restore(
+    path: str | PathLike[str],
+    kind: str,
+    version: int,
+    title: str,
+    build: Callable[[dict[str, Array], Header], T],
+) -> T:
+    """What `build` makes of the arrays and the header that `write_tensors` wrote.
+
+    `build` may raise whatever Python raises where they do not fit together.
+
+    Raises:
+        FileFormatError: as `read_tensors`, and for parts of which nothing can be built.
+    """
+    arrays, header = read_tensors(path, kind, version, title)
+    try:
+        return build(arrays, header)
+    except FileFormatError as error:
+        raise FileFormatError(f"{path}: {error}") from error
+    except (
+        AttributeError, LookupError, MemoryError, OverflowError, TypeError, ValueError,
+    ) as error:  # fmt: skip
+        raise FileFormatError(
+            f"{path}: damaged, its parts do not fit together ({error})"
+        ) from error
 
 
 def _digest(arrays: dict[str, Array], header: str) -> str:

@@ -1,4 +1,8 @@
-"""Resource-allocating networks: online regressors that know nothing of robots."""
+"""Resource-allocating networks: online regressors that know nothing of robots.
+
+Every network here and in the packages within is a `Learner`: it predicts, and it learns one sample
+at a time.
+"""
 
 from handeye.networks.adaptation import CMAC as CMAC
 from handeye.networks.adaptation import GradientDescent as GradientDescent
@@ -10,6 +14,7 @@ from handeye.networks.hardware import FixedPoint as FixedPoint
 from handeye.networks.hardware import FixedVirtualNeuron as FixedVirtualNeuron
 from handeye.networks.hardware import HardwareNetwork as HardwareNetwork
 from handeye.networks.inputs import InputSpace as InputSpace
+from handeye.networks.learner import Learner as Learner
 from handeye.networks.network import ResourceAllocatingNetwork as ResourceAllocatingNetwork
 from handeye.networks.outcomes import Learned as Learned
 from handeye.networks.outcomes import LearnedMany as LearnedMany

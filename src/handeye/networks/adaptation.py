@@ -4,6 +4,7 @@ A kind is a NamedTuple class with one compiled function that changes the units i
 is e = target - output; z and o hold every neuron's squared distance and response to the input.
 """
 
+from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -71,6 +72,40 @@ def find_active(o: Array, n: int, on_threshold: float, indices: Integers) -> int
     return found
 
 
+@compiled
+def imitate(
+    response: NamedTuple,
+    settings: Settings,
+    rate: float,
+    half_distance: float,
+    active: int,
+    units: Units,
+    error: Array,
+    work: Work,
+) -> None:
+    """Eq 3.69 with a virtual neuron of a half-maximum distance, over the active neurons found."""
+    z = work.a[:active]
+    widths = work.b[:active]
+    virtual = work.c[:active]
+    for j in range(active):
+        z[j] = work.z[work.indices[j]]
+    smallest = settings.smallest_width * settings.diameter
+    widths[:] = width(response, max(half_distance, smallest))
+    respond(response, z, widths, virtual)
+    overlap = 0.0
+    for j in range(active):
+        overlap += virtual[j] * work.o[work.indices[j]]
+    # A response with a finite radius and h < 1/2 reaches no active neuron: nothing to correct.
+    if overlap <= 0.0:
+        return
+    # Divided before the error comes in: an overlap next to zero must not make the step overflow.
+    virtual /= overlap
+    for k in range(error.size):
+        step = rate * error[k]
+        for j in range(active):
+            units.weights[k, work.indices[j]] += step * virtual[j]
+
+
 @adapt.of(VirtualNeuron)
 def virtual_neuron(
     rule: VirtualNeuron,
@@ -86,29 +121,11 @@ def virtual_neuron(
     active = find_active(work.o, n, rule.on_threshold, work.indices)
     if active == 0:
         return
-    z = work.a[:active]
-    widths = work.b[:active]
-    virtual = work.c[:active]
     nearest = np.inf
     for j in range(active):
-        z[j] = work.z[work.indices[j]]
-        nearest = min(nearest, z[j])
-    half_distance = settings.half_max_fraction * np.sqrt(nearest)
-    smallest = settings.smallest_width * settings.diameter
-    widths[:] = width(response, max(half_distance, smallest))
-    respond(response, z, widths, virtual)
-    overlap = 0.0
-    for j in range(active):
-        overlap += virtual[j] * work.o[work.indices[j]]
-    # A response with a finite radius and h < 1/2 reaches no active neuron: nothing to correct.
-    if overlap <= 0.0:
-        return
-    # Divided before the error comes in: an overlap next to zero must not make the step overflow.
-    virtual /= overlap
-    for k in range(error.size):
-        step = rule.rate * error[k]
-        for j in range(active):
-            units.weights[k, work.indices[j]] += step * virtual[j]
+        nearest = min(nearest, work.z[work.indices[j]])
+    half_distance = settings.half_max_fraction * sqrt(nearest)
+    imitate(response, settings, rule.rate, half_distance, active, units, error, work)
 
 
 @adapt.of(CMAC)

@@ -1,6 +1,7 @@
 """The space of a network's inputs, and the units in which distances in it are measured."""
 
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -57,6 +58,16 @@ class InputSpace:
         spans = finite(scales, "scales")
         return cls(np.zeros_like(spans), spans, spans)
 
+    @classmethod
+    def of_arrays(cls, arrays: dict[str, Array]) -> "InputSpace":
+        """The space of `arrays`; other entries do not matter."""
+        return cls(arrays["low"], arrays["high"], arrays["scales"])
+
+    @property
+    def arrays(self) -> dict[str, Array]:
+        """Low, high and scales by name, to be stored."""
+        return {"low": self.low, "high": self.high, "scales": self.scales}
+
     @property
     def n_inputs(self) -> int:
         """d."""
@@ -66,6 +77,12 @@ class InputSpace:
     def diameter(self) -> float:
         """D: length of the diagonal of the box, in scaled units."""
         return float(np.linalg.norm((self.high - self.low) / self.scales))
+
+    def of(self, n_inputs: int) -> Self:
+        """Itself; InvalidInput unless it has so many inputs."""
+        if self.n_inputs != n_inputs:
+            raise InvalidInput(f"inputs describes {self.n_inputs} inputs, not {n_inputs}")
+        return self
 
     def scaled_inputs(self, x: Array) -> Array:
         """Inputs x (N, d) in scaled units; InvalidInput if one is too far away to be squared."""

@@ -1,20 +1,21 @@
 """The resource-allocating network: an online regressor that adds neurons where it is surprised."""
 
-from copy import deepcopy
-from os import PathLike
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from handeye.arrays import Array, count, scalar, shaped
 from handeye.errors import InvalidInput
-from handeye.networks import kernels, storage
-from handeye.networks.adaptation import VirtualNeuron
+from handeye.io.tensors import Parts
+from handeye.networks import kernels
+from handeye.networks.adaptation import RULES, VirtualNeuron
+from handeye.networks.checked import CheckedLearner
 from handeye.networks.inputs import InputSpace
-from handeye.networks.outcomes import Learned, LearnedMany, LearningDiverged
-from handeye.networks.responses import Gaussian
-from handeye.networks.schedules import Constant
+from handeye.networks.kinds import checked_kind, restored_kind, stored_kind
+from handeye.networks.outcomes import LearnedMany, LearningDiverged
+from handeye.networks.responses import RESPONSES, Gaussian
+from handeye.networks.schedules import SCHEDULES, Constant
 from handeye.networks.units import (
     Settings,
     Units,
@@ -26,16 +27,17 @@ from handeye.networks.units import (
 )
 
 _FIRST_SIZE = 64
+_KINDS = {"response": RESPONSES, "schedule": SCHEDULES, "adaptation": RULES}
 
 
-class ResourceAllocatingNetwork:
+class ResourceAllocatingNetwork(CheckedLearner):
     """Learns a mapping from R^d to R^m, one sample at a time (Platt 1990; thesis section 3.5.1).
 
-    The output is `sum_j w_j o_j(|x - c_j|)` (eq 3.58). For each sample with error e = target -
-    output, a neuron that makes the output exact there is added if |e| > theta_e, the nearest
-    center is farther than the schedule's theta_d, and there is room; otherwise, if |e| > theta_l,
-    the adaptation rule adjusts the neurons that exist. The defaults are the preferred network of
-    section 3.5.4.
+    The output is `sum_j w_j o_j(|x - c_j|)` (eq 3.58), zero where no neuron answers. For each
+    sample with error e = target - output, a neuron that makes the output exact there is added if
+    |e| > theta_e, the nearest center is farther than the schedule's theta_d, and there is room;
+    otherwise, if |e| > theta_l, the adaptation rule adjusts the neurons that exist. The defaults
+    are the preferred network of section 3.5.4.
 
     Args:
         n_inputs: d.
@@ -57,7 +59,11 @@ class ResourceAllocatingNetwork:
     Raises:
         InvalidInput: a setting out of range, here or in any method an array of the wrong shape or
             type or with values that are not finite; nothing has changed then.
+        LearningDiverged: in learning, at the first sample whose error is beyond 1e100; the samples
+            before it are learned.
     """
+
+    FORMAT = "handeye.network"
 
     def __init__(
         self,
@@ -75,14 +81,12 @@ class ResourceAllocatingNetwork:
         first_width: float = 0.1,
         smallest_width: float = 1e-6,
     ) -> None:
-        self.n_inputs = count(n_inputs, "n_inputs")
-        self.n_outputs = count(n_outputs, "n_outputs")
-        self.inputs = InputSpace.scaled(np.ones(self.n_inputs)) if inputs is None else inputs
-        if self.inputs.n_inputs != self.n_inputs:
-            raise InvalidInput(f"inputs describes {self.inputs.n_inputs} inputs, not {n_inputs}")
-        self.response = storage.checked_kind("response", response)
-        self.schedule = storage.checked_kind("schedule", schedule)
-        self.adaptation = storage.checked_kind("adaptation", adaptation)
+        super().__init__(n_inputs, n_outputs)
+        space = InputSpace.scaled(np.ones(self.n_inputs)) if inputs is None else inputs
+        self.inputs = space.of(self.n_inputs)
+        self.response = checked_kind("response", response, RESPONSES)
+        self.schedule = checked_kind("schedule", schedule, SCHEDULES)
+        self.adaptation = checked_kind("adaptation", adaptation, RULES)
         self.capacity = None if capacity is None else count(capacity, "capacity")
         self.settings = Settings(
             half_max_fraction=scalar(half_max_fraction, "half_max_fraction", above=0.0),
@@ -93,7 +97,6 @@ class ResourceAllocatingNetwork:
             diameter=self.inputs.diameter,
         )
         self._n = 0
-        self._trials = 0
         self._units = allocate_units(self.n_inputs, self.n_outputs, self.capacity or _FIRST_SIZE)
         self._work = allocate_work(0)
 
@@ -101,11 +104,6 @@ class ResourceAllocatingNetwork:
     def n_neurons(self) -> int:
         """Neurons allocated so far."""
         return self._n
-
-    @property
-    def trials(self) -> int:
-        """Samples learned so far: the t of the allocation schedules."""
-        return self._trials
 
     @property
     def centers(self) -> Array:
@@ -130,14 +128,6 @@ class ResourceAllocatingNetwork:
         """
         return 8 * (self.n_inputs + self.n_outputs + 1)
 
-    def predict(self, x: ArrayLike) -> Array:
-        """Output (m,) at one input (d,) (eq 3.58); zero where no neuron answers."""
-        return self._predict(shaped(x, (self.n_inputs,), "x")[np.newaxis])[0]
-
-    def predict_many(self, x: ArrayLike) -> Array:
-        """Outputs (N, m) at inputs (N, d)."""
-        return self._predict(shaped(x, (None, self.n_inputs), "x"))
-
     def nearest(self, x: ArrayLike) -> float:
         """Distance from x (d,) to the closest center in scaled units; inf if there is none.
 
@@ -151,25 +141,6 @@ class ResourceAllocatingNetwork:
         distances = np.empty(len(scaled))
         kernels.nearest_stream(self._units, self._n, scaled, distances)
         return distances
-
-    def learn(self, x: ArrayLike, target: ArrayLike) -> Learned:
-        """Learn one sample, x (d,) and target (m,) (section 3.5.2, A.6.3)."""
-        one = shaped(x, (self.n_inputs,), "x")[np.newaxis]
-        error, allocated = self._learn(one, shaped(target, (self.n_outputs,), "target")[np.newaxis])
-        return Learned(error[0], bool(allocated[0]))
-
-    def learn_many(self, x: ArrayLike, target: ArrayLike) -> LearnedMany:
-        """Learn N samples in order, x (N, d) and target (N, m); the same result as one by one.
-
-        Raises:
-            LearningDiverged: at the first sample whose error is beyond 1e100 or no number; the
-                samples before it are learned.
-        """
-        inputs = shaped(x, (None, self.n_inputs), "x")
-        targets = shaped(target, (None, self.n_outputs), "target")
-        if len(inputs) != len(targets):
-            raise InvalidInput(f"x has {len(inputs)} samples but target has {len(targets)}")
-        return self._learn(inputs, targets)
 
     def place(self, centers: ArrayLike, targets: ArrayLike | None = None, *,
               weight: float = 0.0) -> None:  # fmt: skip
@@ -199,24 +170,6 @@ class ResourceAllocatingNetwork:
             self.response, self.settings, self._units, self._n, scaled, values, targets is not None
         )
 
-    def copy(self) -> Self:
-        """An independent network in the same state."""
-        return deepcopy(self)
-
-    def save(self, path: str | PathLike[str]) -> None:
-        """Write everything to one safetensors file, replacing an old one only once complete."""
-        storage.save(self, path)
-
-    @staticmethod
-    def load(path: str | PathLike[str]) -> "ResourceAllocatingNetwork":
-        """The network that `save` wrote.
-
-        Raises:
-            FileFormatError: a damaged or foreign file, one written by a newer version, or one that
-                uses a response, schedule or rule that is not registered.
-        """
-        return storage.load(path)
-
     def __repr__(self) -> str:
         """Shape, state and kinds."""
         limit = "unlimited" if self.capacity is None else f"at most {self.capacity}"
@@ -226,14 +179,15 @@ class ResourceAllocatingNetwork:
             f"{self.response!r}, {self.schedule!r}, {self.adaptation!r})"
         )
 
+    def _inputs(self, x: Array) -> Array:
+        return self.inputs.scaled_inputs(x)
+
     def _predict(self, inputs: Array) -> Array:
         outputs = np.empty((len(inputs), self.n_outputs))
-        scaled = self.inputs.scaled_inputs(inputs)
-        kernels.predict_stream(self.response, self._units, self._n, scaled, outputs)
+        kernels.predict_stream(self.response, self._units, self._n, inputs, outputs)
         return outputs
 
     def _learn(self, inputs: Array, targets: Array) -> LearnedMany:
-        scaled, targets = self.inputs.scaled_inputs(inputs), moderate(targets, "target")
         errors = np.empty_like(targets)
         allocated = np.zeros(len(inputs), np.bool_)
         state = (0, self._n, self._trials)
@@ -245,7 +199,7 @@ class ResourceAllocatingNetwork:
             done = state[0]
             state = kernels.learn_stream(
                 self.response, self.schedule, self.adaptation, self.settings, self._units,
-                self._work, state, self.capacity is None, scaled, targets, errors, allocated,
+                self._work, state, self.capacity is None, inputs, targets, errors, allocated,
             )  # fmt: skip
             _, self._n, self._trials = state
             if state[0] == done:
@@ -255,8 +209,32 @@ class ResourceAllocatingNetwork:
                 )
         return LearnedMany(errors, allocated)
 
-    def _restore(self, units: Units, trials: int) -> None:
-        """Take over stored neurons; InvalidInput if their arrays do not fit together."""
-        self._units = restored(units, self._units, self.capacity)
-        self._trials = count(trials, "trials", least=0)
-        self._n = np.size(units.widths)
+    def _parts(self) -> Parts:
+        n, units = self._n, self._units
+        arrays = {
+            "centers": units.centers[:, :n],
+            "widths": units.widths[:n],
+            "weights": units.weights[:, :n],
+            **self.inputs.arrays,
+        }
+        rest: dict[str, Any] = {
+            "capacity": self.capacity,
+            "settings": {k: v for k, v in self.settings._asdict().items() if k != "diameter"},
+        }
+        return arrays, rest | {role: stored_kind(getattr(self, role)) for role in _KINDS}
+
+    @classmethod
+    def _restored(cls, arrays: dict[str, Array], rest: dict[str, Any]) -> Self:
+        kinds = {role: restored_kind(role, rest[role], known) for role, known in _KINDS.items()}
+        network = cls(
+            len(arrays["centers"]),
+            len(arrays["weights"]),
+            inputs=InputSpace.of_arrays(arrays),
+            capacity=rest["capacity"],
+            **kinds,
+            **rest["settings"],
+        )
+        units = Units(arrays["centers"], arrays["widths"], arrays["weights"])
+        network._units = restored(units, network._units, network.capacity)
+        network._n = np.size(units.widths)
+        return network

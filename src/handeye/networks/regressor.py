@@ -1,5 +1,6 @@
-"""The network as a scikit-learn estimator (extra "sklearn")."""
+"""Networks as scikit-learn estimators (extra "sklearn")."""
 
+from abc import abstractmethod
 from typing import Any, Literal, NamedTuple, Self, cast
 
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.typing import ArrayLike
 from handeye.arrays import Array, count, shaped
 from handeye.errors import InvalidInput, MissingExtra
 from handeye.networks.adaptation import VirtualNeuron
+from handeye.networks.checked import CheckedLearner
 from handeye.networks.inputs import InputSpace
 from handeye.networks.network import ResourceAllocatingNetwork
 from handeye.networks.responses import Gaussian
@@ -27,14 +29,86 @@ except ImportError as error:
 _validation = cast("Any", validation)
 
 
-class RANRegressor(MultiOutputMixin, RegressorMixin, BaseEstimator):
-    """Resource-allocating network regression, in a batch or online, with one output or many.
+class OnlineRegressor(MultiOutputMixin, RegressorMixin, BaseEstimator):
+    """A network behind the interface of scikit-learn, in a batch or online, one output or many.
 
     Targets are standardised by the mean and standard deviation of the first data seen: all that
     `fit` is given, or the first batch of `partial_fit`, which should therefore be representative.
-    So both thresholds are fractions of the targets' spread, whatever their unit, and far from all
-    experience the prediction is the mean. With several outputs the error compared with a threshold
-    is the norm of the standardised errors.
+    So thresholds are fractions of the targets' spread, whatever their unit, and far from all
+    experience the prediction is the mean. A subclass says in `_network` which network learns.
+    """
+
+    network_: Any  # the learner of `_network`, of a kind that the subclass says
+    target_mean_: Array
+    target_scale_: Array
+    epochs: int
+    random_state: int | np.random.RandomState | None
+
+    def fit(self, X: ArrayLike, y: ArrayLike) -> Self:
+        """Forget everything and learn X (N, d), y (N,) or (N, m), in order."""
+        epochs = count(self.epochs, "epochs")
+        inputs, targets = self._checked(X, y, first=True)
+        self._begin(inputs, targets)
+        order: Any = slice(None)
+        seed = self.random_state
+        random = None if seed is None else _validation.check_random_state(seed)
+        for _ in range(epochs):
+            if random is not None:
+                order = random.permutation(len(inputs))
+            self._learn(inputs[order], targets[order])
+        return self
+
+    def partial_fit(self, X: ArrayLike, y: ArrayLike) -> Self:
+        """Learn more samples, in order; the first call sets the scales of inputs and targets."""
+        first = not hasattr(self, "network_")
+        inputs, targets = self._checked(X, y, first=first)
+        if first:
+            self._begin(inputs, targets)
+        elif targets.shape[1:] != self._target_shape:
+            raise InvalidInput(
+                f"y must have shape (N, {', '.join(map(str, self._target_shape))}) as in the first "
+                f"call, got {targets.shape}"
+            )
+        self._learn(inputs, targets)
+        return self
+
+    def predict(self, X: ArrayLike) -> Array:
+        """Predicted targets, (N,) if one was learned as a flat array, else (N, m)."""
+        inputs = self._checked_inputs(X)
+        outputs = self.network_.predict_many(inputs) * self.target_scale_ + self.target_mean_
+        return outputs.reshape(-1, *self._target_shape)
+
+    def _checked_inputs(self, X: ArrayLike) -> Array:
+        _validation.check_is_fitted(self)
+        return _validation.validate_data(self, X, dtype=np.float64, reset=False)
+
+    def _checked(self, X: ArrayLike, y: ArrayLike, *, first: bool) -> tuple[Array, Array]:
+        options: dict[str, Any] = {"dtype": np.float64, "multi_output": True, "y_numeric": True}
+        inputs, targets = _validation.validate_data(self, X, y, reset=first, **options)
+        return inputs, np.asarray(targets, np.float64)
+
+    def _begin(self, inputs: Array, targets: Array) -> None:
+        """A network for these samples, which has learned nothing."""
+        outputs = targets.reshape(len(targets), -1)
+        self.network_ = self._network(inputs, outputs.shape[1])
+        self.target_mean_ = outputs.mean(axis=0)
+        self.target_scale_ = spread(outputs)
+        self._target_shape = targets.shape[1:]
+
+    @abstractmethod
+    def _network(self, inputs: Array, n_outputs: int) -> CheckedLearner:
+        """A fresh network for inputs (N, d), the first."""
+
+    def _learn(self, inputs: Array, targets: Array) -> None:
+        outputs = targets.reshape(len(targets), -1)
+        self.network_.learn_many(inputs, (outputs - self.target_mean_) / self.target_scale_)
+
+
+class RANRegressor(OnlineRegressor):
+    """Resource-allocating network regression, in a batch or online, with one output or many.
+
+    Targets are standardised by the first data seen, as in every OnlineRegressor. With several
+    outputs the error compared with a threshold is the norm of the standardised errors.
 
     Args:
         scales: differences of each input that count as a distance of one, (d,); "auto" takes the
@@ -67,8 +141,6 @@ class RANRegressor(MultiOutputMixin, RegressorMixin, BaseEstimator):
     """
 
     network_: ResourceAllocatingNetwork
-    target_mean_: Array
-    target_scale_: Array
 
     def __init__(
         self,
@@ -99,63 +171,15 @@ class RANRegressor(MultiOutputMixin, RegressorMixin, BaseEstimator):
         self.epochs = epochs
         self.random_state = random_state
 
-    def fit(self, X: ArrayLike, y: ArrayLike) -> Self:
-        """Forget everything and learn X (N, d), y (N,) or (N, m), in order."""
-        epochs = count(self.epochs, "epochs")
-        inputs, targets = self._checked(X, y, first=True)
-        self._begin(inputs, targets)
-        order: Any = slice(None)
-        seed = self.random_state
-        random = None if seed is None else _validation.check_random_state(seed)
-        for _ in range(epochs):
-            if random is not None:
-                order = random.permutation(len(inputs))
-            self._learn(inputs[order], targets[order])
-        return self
-
-    def partial_fit(self, X: ArrayLike, y: ArrayLike) -> Self:
-        """Learn more samples, in order; the first call sets the scales of inputs and targets."""
-        first = not hasattr(self, "network_")
-        inputs, targets = self._checked(X, y, first=first)
-        if first:
-            self._begin(inputs, targets)
-        elif targets.shape[1:] != self._target_shape:
-            raise InvalidInput(
-                f"y must have shape (N, {', '.join(map(str, self._target_shape))}) as in the first "
-                f"call, got {targets.shape}"
-            )
-        self._learn(inputs, targets)
-        return self
-
-    def predict(self, X: ArrayLike) -> Array:
-        """Predicted targets, (N,) if one was learned as a flat array, else (N, m)."""
-        _validation.check_is_fitted(self)
-        inputs: Array = _validation.validate_data(self, X, dtype=np.float64, reset=False)
-        outputs = self.network_.predict_many(inputs) * self.target_scale_ + self.target_mean_
-        return outputs.reshape(-1, *self._target_shape)
-
-    def _checked(self, X: ArrayLike, y: ArrayLike, *, first: bool) -> tuple[Array, Array]:
-        options: dict[str, Any] = {"dtype": np.float64, "multi_output": True, "y_numeric": True}
-        inputs, targets = _validation.validate_data(self, X, y, reset=first, **options)
-        return inputs, np.asarray(targets, np.float64)
-
-    def _begin(self, inputs: Array, targets: Array) -> None:
-        """A network for these samples, which has learned nothing."""
+    def _network(self, inputs: Array, n_outputs: int) -> ResourceAllocatingNetwork:
         low, high = inputs.min(axis=0), inputs.max(axis=0)
-        if isinstance(self.scales, str):
-            if self.scales != "auto":
-                raise InvalidInput(f'scales must be "auto" or an array, got {self.scales!r}')
-            scales = _spread(inputs)
-        else:
-            scales = shaped(self.scales, (inputs.shape[1],), "scales")
+        scales = input_scales(self.scales, inputs)
         # An input that has not varied yet still needs a side of the box.
         still = high <= low
-        space = InputSpace(low - 0.5 * scales * still, high + 0.5 * scales * still, scales)
-        outputs = targets.reshape(len(targets), -1)
-        self.network_ = ResourceAllocatingNetwork(
+        return ResourceAllocatingNetwork(
             inputs.shape[1],
-            outputs.shape[1],
-            inputs=space,
+            n_outputs,
+            inputs=InputSpace(low - 0.5 * scales * still, high + 0.5 * scales * still, scales),
             response=Gaussian() if self.response is None else self.response,
             schedule=Constant() if self.schedule is None else self.schedule,
             adaptation=VirtualNeuron() if self.adaptation is None else self.adaptation,
@@ -166,16 +190,18 @@ class RANRegressor(MultiOutputMixin, RegressorMixin, BaseEstimator):
             first_width=self.first_width,
             smallest_width=self.smallest_width,
         )
-        self.target_mean_ = outputs.mean(axis=0)
-        self.target_scale_ = _spread(outputs)
-        self._target_shape = targets.shape[1:]
-
-    def _learn(self, inputs: Array, targets: Array) -> None:
-        outputs = targets.reshape(len(targets), -1)
-        self.network_.learn_many(inputs, (outputs - self.target_mean_) / self.target_scale_)
 
 
-def _spread(columns: Array) -> Array:
+def input_scales(scales: Literal["auto"] | ArrayLike, inputs: Array) -> Array:
+    """Scales (d,) as given, or the spread of inputs (N, d) for "auto"."""
+    if not isinstance(scales, str):
+        return shaped(scales, (inputs.shape[1],), "scales")
+    if scales != "auto":
+        raise InvalidInput(f'scales must be "auto" or an array, got {scales!r}')
+    return spread(inputs)
+
+
+def spread(columns: Array) -> Array:
     """Standard deviation of each column of (N, n), 1 where it does not vary."""
-    spread = columns.std(axis=0)
-    return np.where(spread > 1e-12 * np.abs(columns).max(axis=0), spread, 1.0)
+    deviation = columns.std(axis=0)
+    return np.where(deviation > 1e-12 * np.abs(columns).max(axis=0), deviation, 1.0)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from tests.networks.hardware.made import SPACE, trained
+from tests.networks.samples import fewer
 
 from handeye.errors import InvalidInput
 from handeye.networks import (
@@ -27,7 +28,7 @@ from handeye.networks.hardware.c_costs import CCosts
 from handeye.networks.hardware.c_source import LOOSE, TIGHT, c_files, write_c
 
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O1"]
-N = 150
+N = fewer(150, 50)
 
 CASES = [
     (Gaussian(), VirtualNeuron(), FixedPoint(8)),

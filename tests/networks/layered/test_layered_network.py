@@ -9,7 +9,7 @@ from tests.networks.layered.formulas import make
 from handeye.errors import FileFormatError, InvalidInput
 from handeye.io.tensors import read_tensors, write_tensors
 from handeye.networks import InputSpace, LearningDiverged
-from handeye.networks.layered import LayeredNetwork, Linear, Tanh, storage
+from handeye.networks.layered import LayeredNetwork, Linear, Tanh
 
 FAST: Any = "fast"
 
@@ -147,10 +147,10 @@ UNFIT: dict[str, tuple[dict[str, Any], str]] = {
 def test_files_whose_parts_do_not_fit_are_refused(change, message, tmp_path):
     path = tmp_path / "n"
     make().save(path)
-    arrays, header = read_tensors(path, storage.FORMAT, storage.VERSION, "a network")
+    arrays, header = read_tensors(path, LayeredNetwork.FORMAT, LayeredNetwork.VERSION, "")
     for name, value in change.items():
         (arrays if name in arrays else header)[name] = value
-    write_tensors(path, storage.FORMAT, storage.VERSION, arrays, header)
+    write_tensors(path, LayeredNetwork.FORMAT, LayeredNetwork.VERSION, arrays, header)
     with pytest.raises(FileFormatError, match=message) as caught:
         LayeredNetwork.load(path)
     assert str(path) in str(caught.value)

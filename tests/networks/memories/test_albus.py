@@ -98,6 +98,17 @@ def test_the_output_is_constant_within_a_quantum_and_not_beyond():
     np.testing.assert_allclose(cmac.predict_many([[0.199], [0.401]]), 3.0)
 
 
+def test_a_displacement_by_whole_fields_more_is_the_same_however_far():
+    x = np.random.default_rng(3).uniform(-3.0, 3.0, (40, 2))
+    near, far = (
+        AlbusCMAC(2, 1, layers=5, slots=500, displacements=(1, 3 + 5 * fields))
+        for fields in (0, 10**18)
+    )
+    for cmac in (near, far):
+        cmac.learn_many(x, x[:, :1])
+    np.testing.assert_array_equal(far.weights, near.weights)
+
+
 def test_collisions_are_counted_and_only_they_are():
     roomy, tight = (AlbusCMAC(2, 1, layers=4, slots=slots) for slots in (4 * 100_003, 8))
     x = np.random.default_rng(1).uniform(-5.0, 5.0, (200, 2))

@@ -2,6 +2,7 @@
 
 Over u every kind has one curve, whatever a neuron's width: it falls from 1 to 1/2 at u = 1.
 """
+# ruff: noqa: ARG001 (every implementation has the arguments of its declaration)
 
 from typing import Any, NamedTuple
 
@@ -21,19 +22,19 @@ def curve(response: NamedTuple, u: float) -> Any:
 
 
 @curve.of(Gaussian)
-def gaussian(response: Gaussian, u: float) -> float:  # noqa: ARG001
+def gaussian(response: Gaussian, u: float) -> float:
     """Eq 3.45 is 2^-u."""
     return np.exp2(-u)
 
 
 @curve.of(Cosine)
-def cosine(response: Cosine, u: float) -> float:  # noqa: ARG001
+def cosine(response: Cosine, u: float) -> float:
     """Eq 3.107."""
     return 0.5 * (1.0 + np.cos(0.5 * np.pi * np.sqrt(u))) if u < SPAN else 0.0
 
 
 @curve.of(Parabolic)
-def parabolic(response: Parabolic, u: float) -> float:  # noqa: ARG001
+def parabolic(response: Parabolic, u: float) -> float:
     """Eq 3.108: its inner part is a straight line over u."""
     if u <= 1.0:
         return 1.0 - 0.5 * u

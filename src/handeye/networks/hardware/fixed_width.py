@@ -1,10 +1,10 @@
 """Virtual neurons of one width, fixed at the outset (section 3.5.3, appendix B)."""
+# ruff: noqa: ARG001 (every implementation has the arguments of its declaration)
 
 from typing import NamedTuple
 
 from handeye.arrays import Array
-from handeye.networks.adaptation import RULES, adapt, find_active
-from handeye.networks.responses import respond, width
+from handeye.networks.adaptation import RULES, adapt, find_active, imitate
 from handeye.networks.units import Settings, Units, Work
 
 
@@ -27,28 +27,13 @@ def fixed_virtual_neuron(
     settings: Settings,
     units: Units,
     n: int,
-    x: Array,  # noqa: ARG001
+    x: Array,
     error: Array,
     work: Work,
 ) -> None:
     """Eq 3.69."""
     active = find_active(work.o, n, rule.on_threshold, work.indices)
-    z, widths, virtual = work.a[:active], work.b[:active], work.c[:active]
-    for j in range(active):
-        z[j] = work.z[work.indices[j]]
-    smallest = settings.smallest_width * settings.diameter
-    widths[:] = width(response, max(rule.half_distance, smallest))
-    respond(response, z, widths, virtual)
-    overlap = 0.0
-    for j in range(active):
-        overlap += virtual[j] * work.o[work.indices[j]]
-    if overlap <= 0.0:
-        return
-    virtual /= overlap
-    for k in range(error.size):
-        step = rule.rate * error[k]
-        for j in range(active):
-            units.weights[k, work.indices[j]] += step * virtual[j]
+    imitate(response, settings, rule.rate, rule.half_distance, active, units, error, work)
 
 
 RULES[FixedVirtualNeuron.__name__] = FixedVirtualNeuron

@@ -1,4 +1,5 @@
 """Double precision: the same phases as a processor with floating point would run them."""
+# ruff: noqa: ARG001 (every implementation has the arguments of its declaration)
 
 from typing import NamedTuple
 
@@ -43,10 +44,10 @@ class Floating(NamedTuple):
 @activity.of(Floating)
 def floating_activity(
     numbers: Floating,
-    table: Array,  # noqa: ARG001
+    table: Array,
     z: float,
     gain: float,
-    shift: int,  # noqa: ARG001
+    shift: int,
     tally: Tally,
 ) -> float:
     """One call of the curve's function."""
@@ -55,7 +56,7 @@ def floating_activity(
 
 
 @output_word.of(Floating)
-def floating_output_word(numbers: Floating, total: float, tally: Tally) -> float:  # noqa: ARG001
+def floating_output_word(numbers: Floating, total: float, tally: Tally) -> float:
     """As it is."""
     return total
 
@@ -74,7 +75,7 @@ def floating_fixed_width(numbers: Floating) -> tuple[float, int]:
 
 
 @alike.of(Floating)
-def floating_alike(numbers: Floating, total: float) -> float:  # noqa: ARG001
+def floating_alike(numbers: Floating, total: float) -> float:
     """The same units."""
     return total
 
@@ -82,7 +83,7 @@ def floating_alike(numbers: Floating, total: float) -> float:  # noqa: ARG001
 @quotient.of(Floating)
 def floating_quotient(
     numbers: Floating,
-    table: Array,  # noqa: ARG001
+    table: Array,
     overlap: float,
     tally: Tally,
 ) -> tuple[float, int]:
@@ -92,18 +93,18 @@ def floating_quotient(
 
 
 @part.of(Floating)
-def floating_part(numbers: Floating, q: float, error: float, tally: Tally) -> float:  # noqa: ARG001
+def floating_part(numbers: Floating, q: float, error: float, tally: Tally) -> float:
     """One product."""
     return times(q, error, tally)
 
 
 @change_alike.of(Floating)
 def floating_change_alike(
-    numbers: Floating,  # noqa: ARG001
+    numbers: Floating,
     part: float,
-    shift: int,  # noqa: ARG001
-    noise: Integers,  # noqa: ARG001
-    tally: Tally,  # noqa: ARG001
+    shift: int,
+    noise: Integers,
+    tally: Tally,
 ) -> float:
     """As it is."""
     return part
@@ -111,11 +112,11 @@ def floating_change_alike(
 
 @change_of.of(Floating)
 def floating_change_of(
-    numbers: Floating,  # noqa: ARG001
+    numbers: Floating,
     part: float,
     response: float,
-    shift: int,  # noqa: ARG001
-    noise: Integers,  # noqa: ARG001
+    shift: int,
+    noise: Integers,
     tally: Tally,
 ) -> float:
     """One product."""
@@ -124,7 +125,7 @@ def floating_change_of(
 
 @changed.of(Floating)
 def floating_changed(
-    numbers: Floating,  # noqa: ARG001
+    numbers: Floating,
     weight: float,
     change: float,
     tally: Tally,

@@ -1,4 +1,5 @@
 """One sample after the other through the phases: what each adaptation rule makes of them."""
+# ruff: noqa: ARG001 (every implementation has the arguments of its declaration)
 
 from typing import Any, NamedTuple
 
@@ -54,7 +55,7 @@ def teach(
 
 @teach.of(VirtualNeuron)
 def teach_virtual(
-    rule: VirtualNeuron,  # noqa: ARG001
+    rule: VirtualNeuron,
     numbers: NamedTuple,
     tables: Tables,
     cells: Cells,
@@ -69,7 +70,7 @@ def teach_virtual(
 
 @teach.of(FixedVirtualNeuron)
 def teach_fixed(
-    rule: FixedVirtualNeuron,  # noqa: ARG001
+    rule: FixedVirtualNeuron,
     numbers: NamedTuple,
     tables: Tables,
     cells: Cells,
@@ -83,7 +84,7 @@ def teach_fixed(
 
 @teach.of(CMAC)
 def teach_cmac(
-    rule: CMAC,  # noqa: ARG001
+    rule: CMAC,
     numbers: NamedTuple,
     tables: Tables,
     cells: Cells,

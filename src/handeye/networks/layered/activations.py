@@ -3,14 +3,13 @@
 A kind is a NamedTuple class with two compiled functions, registered below; a new one needs nothing
 else. Its derivative is a function of the response, which is all that a trial keeps.
 """
+# ruff: noqa: ARG001 (every implementation has the arguments of its declaration)
 
 from typing import NamedTuple
 
 import numpy as np
 
 from handeye._compiled import by_kind
-from handeye.arrays import scalar
-from handeye.errors import InvalidInput
 
 
 class Tanh(NamedTuple):
@@ -32,13 +31,13 @@ class Linear(NamedTuple):
 
 
 @by_kind
-def respond(activation: NamedTuple, excitation: float) -> float:  # noqa: ARG001 (a declaration)
+def respond(activation: NamedTuple, excitation: float) -> float:
     """The response o to a net excitation e."""
     return excitation
 
 
 @by_kind
-def slope(activation: NamedTuple, o: float) -> float:  # noqa: ARG001 (a declaration)
+def slope(activation: NamedTuple, o: float) -> float:
     """The derivative do/de where the response is o."""
     return o
 
@@ -74,26 +73,10 @@ def linear(activation: Linear, excitation: float) -> float:
 
 
 @slope.of(Linear)
-def linear_slope(activation: Linear, o: float) -> float:  # noqa: ARG001 (as declared)
+def linear_slope(activation: Linear, o: float) -> float:
     """Constant."""
     return activation.gain
 
 
 ACTIVATIONS: dict[str, type] = {kind.__name__: kind for kind in (Tanh, Sigmoid, Linear)}
 """Every activation by name; a stored network finds its own here. Add yours."""
-
-
-def checked_activation(role: str, kind: NamedTuple) -> NamedTuple:
-    """`kind` with plain numbers in its fields.
-
-    Raises InvalidInput unless it is an instance of a registered class with positive numbers.
-    """
-    if ACTIVATIONS.get(type(kind).__name__) is not type(kind):
-        hint = f" (an instance, {kind.__name__}(), not the class)" if isinstance(kind, type) else ""
-        raise InvalidInput(
-            f"{role} must be one of {', '.join(sorted(ACTIVATIONS))}{hint}, got {kind!r}"
-        )
-    numbers = {
-        name: scalar(value, f"{role} {name}", above=0.0) for name, value in kind._asdict().items()
-    }
-    return kind._replace(**numbers)

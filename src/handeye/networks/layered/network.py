@@ -1,24 +1,27 @@
 """The layered network: neurons in layers, all taught at once by propagating errors back."""
 
 from collections.abc import Sequence
-from copy import deepcopy
-from os import PathLike
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from handeye.arrays import Array, count, scalar, shaped
 from handeye.errors import InvalidInput
+from handeye.io.tensors import Parts
+from handeye.networks.checked import CheckedLearner
 from handeye.networks.inputs import InputSpace
-from handeye.networks.layered import kernels, storage
-from handeye.networks.layered.activations import Linear, Tanh, checked_activation
-from handeye.networks.outcomes import Learned, LearnedMany, LearningDiverged
+from handeye.networks.kinds import checked_kind, restored_kind, stored_kind
+from handeye.networks.layered import kernels
+from handeye.networks.layered.activations import ACTIVATIONS, Linear, Tanh
+from handeye.networks.outcomes import LearnedMany, LearningDiverged
 from handeye.networks.units import moderate
 from handeye.randomness import stream
 
+_ROLES = ("activation", "output")
 
-class LayeredNetwork:
+
+class LayeredNetwork(CheckedLearner):
     """Learns a mapping from R^d to R^m by back error propagation (section A.6.2).
 
     Each neuron weighs the answers of the layer below, `o_j = f(sum_k w_jk o_k - theta_j)`. After
@@ -42,7 +45,11 @@ class LayeredNetwork:
     Raises:
         InvalidInput: a setting out of range, here or in any method an array of the wrong shape or
             type or with values that are not finite; nothing has changed then.
+        LearningDiverged: in learning, at the first sample whose error is beyond 1e100; the samples
+            before it are learned.
     """
+
+    FORMAT = "handeye.layered"
 
     def __init__(
         self,
@@ -58,24 +65,22 @@ class LayeredNetwork:
         largest_weight: float = 0.3,
         rng: np.random.Generator | None = None,
     ) -> None:
-        self.n_inputs = count(n_inputs, "n_inputs")
-        self.n_outputs = count(n_outputs, "n_outputs")
+        super().__init__(n_inputs, n_outputs)
         between = [count(n, "each of hidden") for n in hidden]
         self._sizes = np.array([self.n_inputs, *between, self.n_outputs], np.int64)
         ones = np.ones(self.n_inputs)
-        self.inputs = InputSpace.box(-ones, ones) if inputs is None else inputs
-        if self.inputs.n_inputs != self.n_inputs:
-            raise InvalidInput(f"inputs describes {self.inputs.n_inputs} inputs, not {n_inputs}")
+        space = InputSpace.box(-ones, ones) if inputs is None else inputs
+        self.inputs = space.of(self.n_inputs)
         self._scales = _output_scales(output_scale, self.n_outputs)
         self.kinds = kernels.Kinds(
-            checked_activation("activation", activation), checked_activation("output", output)
+            checked_kind("activation", activation, ACTIVATIONS, above=0.0),
+            checked_kind("output", output, ACTIVATIONS, above=0.0),
         )
         self.rate = scalar(rate, "rate", above=0.0)
         span = scalar(largest_weight, "largest_weight", least=0.0)
         draw = stream("layered network: first weights") if rng is None else rng
         n_weights = int(((self._sizes[:-1] + 1) * self._sizes[1:]).sum())
         self._weights = draw.uniform(-span, span, n_weights)
-        self._trials = 0
 
     @property
     def hidden(self) -> tuple[int, ...]:
@@ -93,11 +98,6 @@ class LayeredNetwork:
         return self._weights.size
 
     @property
-    def trials(self) -> int:
-        """Samples learned so far."""
-        return self._trials
-
-    @property
     def weights(self) -> list[Array]:
         """Of each layer a matrix (m, n + 1) from n neurons to m, minus thresholds last; copies."""
         return [block.copy() for block in self._blocks()]
@@ -113,39 +113,12 @@ class LayeredNetwork:
         ]
         self._weights = np.concatenate([block.ravel() for block in checked])
 
-    def predict(self, x: ArrayLike) -> Array:
-        """Output (m,) at one input (d,)."""
-        return self._predict(shaped(x, (self.n_inputs,), "x")[np.newaxis])[0]
-
-    def predict_many(self, x: ArrayLike) -> Array:
-        """Outputs (N, m) at inputs (N, d)."""
-        return self._predict(shaped(x, (None, self.n_inputs), "x"))
-
     def slopes(self, x: ArrayLike) -> Array:
         """Derivatives (m, d) of every output by every input at x (d,), in their units."""
-        centred = self._centred(shaped(x, (self.n_inputs,), "x"))
+        centred = self._inputs(shaped(x, (self.n_inputs,), "x"))
         slopes = np.empty((self.n_outputs, self.n_inputs))
         kernels.input_slopes(self.kinds, self._sizes, self._weights, centred, slopes)
         return slopes * self._scales[:, np.newaxis] / self._half
-
-    def learn(self, x: ArrayLike, target: ArrayLike) -> Learned:
-        """Learn one sample, x (d,) and target (m,) (eq A.9 to A.14)."""
-        one = shaped(x, (self.n_inputs,), "x")[np.newaxis]
-        error, _ = self._learn(one, shaped(target, (self.n_outputs,), "target")[np.newaxis])
-        return Learned(error[0], False)
-
-    def learn_many(self, x: ArrayLike, target: ArrayLike) -> LearnedMany:
-        """Learn N samples in order, x (N, d) and target (N, m); the same result as one by one.
-
-        Raises:
-            LearningDiverged: at the first sample whose error is beyond 1e100 or no number; the
-                samples before it are learned.
-        """
-        inputs = shaped(x, (None, self.n_inputs), "x")
-        targets = shaped(target, (None, self.n_outputs), "target")
-        if len(inputs) != len(targets):
-            raise InvalidInput(f"x has {len(inputs)} samples but target has {len(targets)}")
-        return self._learn(inputs, targets)
 
     def learn_change(self, x: ArrayLike, change: ArrayLike) -> None:
         """Move the output at x (d,) along a wanted change (m,), as if it were target - output.
@@ -153,28 +126,10 @@ class LayeredNetwork:
         For a network whose own target nobody knows, only how its output should change (eq A.18).
         It counts as a trial.
         """
-        centred = self._centred(shaped(x, (self.n_inputs,), "x"))
+        centred = self._inputs(shaped(x, (self.n_inputs,), "x"))
         wanted = moderate(shaped(change, (self.n_outputs,), "change"), "change") / self._scales
         kernels.learn_signal(self.kinds, self.rate, self._sizes, self._weights, centred, wanted)
         self._trials += 1
-
-    def copy(self) -> Self:
-        """An independent network in the same state."""
-        return deepcopy(self)
-
-    def save(self, path: str | PathLike[str]) -> None:
-        """Write everything to one safetensors file, replacing an old one only once complete."""
-        storage.save(self, path)
-
-    @staticmethod
-    def load(path: str | PathLike[str]) -> "LayeredNetwork":
-        """The network that `save` wrote.
-
-        Raises:
-            FileFormatError: a damaged or foreign file, one written by a newer version, or one that
-                uses an activation that is not registered.
-        """
-        return storage.load(path)
 
     def __repr__(self) -> str:
         """Shape, state and kinds."""
@@ -188,11 +143,11 @@ class LayeredNetwork:
     def _half(self) -> Array:
         return 0.5 * (self.inputs.high - self.inputs.low)
 
-    def _centred(self, inputs: Array) -> Array:
-        """Inputs with the box mapped to [-1, 1]."""
+    def _inputs(self, x: Array) -> Array:
+        """With the box mapped to [-1, 1]."""
         middle = 0.5 * (self.inputs.low + self.inputs.high)
         with np.errstate(over="ignore"):
-            return moderate((inputs - middle) / self._half, "inputs over half their box")
+            return moderate((x - middle) / self._half, "inputs over half their box")
 
     def _blocks(self) -> list[Array]:
         pairs = list(zip(self._sizes[:-1] + 1, self._sizes[1:], strict=True))
@@ -202,17 +157,15 @@ class LayeredNetwork:
 
     def _predict(self, inputs: Array) -> Array:
         outputs = np.empty((len(inputs), self.n_outputs))
-        centred = self._centred(inputs)
         kernels.predict_stream(
-            self.kinds, self._sizes, self._weights, self._scales, centred, outputs
+            self.kinds, self._sizes, self._weights, self._scales, inputs, outputs
         )
         return outputs
 
     def _learn(self, inputs: Array, targets: Array) -> LearnedMany:
-        centred, targets = self._centred(inputs), moderate(targets, "target")
         errors = np.empty_like(targets)
         done = kernels.learn_stream(
-            self.kinds, self.rate, self._sizes, self._weights, self._scales, centred, targets,
+            self.kinds, self.rate, self._sizes, self._weights, self._scales, inputs, targets,
             errors,
         )  # fmt: skip
         self._trials += done
@@ -223,10 +176,31 @@ class LayeredNetwork:
             )
         return LearnedMany(errors, np.zeros(len(inputs), np.bool_))
 
-    def _restore(self, weights: Array, trials: int) -> None:
-        """Take over stored weights; InvalidInput if they do not fit."""
-        self._weights = shaped(weights, self._weights.shape, "weights").copy()
-        self._trials = count(trials, "trials", least=0)
+    def _parts(self) -> Parts:
+        arrays = {
+            "weights": self._weights, "output_scale": self._scales, **self.inputs.arrays
+        }  # fmt: skip
+        return arrays, {
+            "hidden": list(self.hidden),
+            "rate": self.rate,
+            "activation": stored_kind(self.kinds.hidden),
+            "output": stored_kind(self.kinds.output),
+        }
+
+    @classmethod
+    def _restored(cls, arrays: dict[str, Array], rest: dict[str, Any]) -> Self:
+        kinds = {role: restored_kind(role, rest[role], ACTIVATIONS) for role in _ROLES}
+        network = cls(
+            arrays["low"].size,
+            arrays["output_scale"].size,
+            rest["hidden"],
+            inputs=InputSpace.of_arrays(arrays),
+            output_scale=arrays["output_scale"],
+            rate=rest["rate"],
+            **kinds,
+        )
+        network._weights = shaped(arrays["weights"], network._weights.shape, "weights").copy()
+        return network
 
 
 def _output_scales(value: ArrayLike, n_outputs: int) -> Array:

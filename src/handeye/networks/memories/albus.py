@@ -7,9 +7,10 @@ import numpy as np
 
 from handeye.arrays import Array, count, scalar, shaped
 from handeye.errors import InvalidInput
+from handeye.io.tensors import Parts
+from handeye.networks.checked import CheckedLearner
 from handeye.networks.inputs import InputSpace
 from handeye.networks.memories import albus_kernels as kernels
-from handeye.networks.memories.learner import Learner, Parts
 from handeye.networks.outcomes import LearnedMany
 from handeye.networks.units import LARGEST
 
@@ -17,7 +18,7 @@ FARTHEST = 2.0**52
 """Largest input in quanta: beyond, neighbouring quanta are no longer told apart."""
 
 
-class AlbusCMAC(Learner):
+class AlbusCMAC(CheckedLearner):
     """Learns a mapping from R^d to R^m with a table of fixed size (Albus 1975; section A.6.4).
 
     The space of inputs is covered by C layers of cells, boxes of the same size, each layer
@@ -51,7 +52,7 @@ class AlbusCMAC(Learner):
             type or with values that are not finite; nothing has changed then.
     """
 
-    _FORMAT = "handeye.albus-cmac"
+    FORMAT = "handeye.albus-cmac"
 
     def __init__(
         self,
@@ -66,9 +67,8 @@ class AlbusCMAC(Learner):
         displacements: Sequence[int] | None = None,
     ) -> None:
         super().__init__(n_inputs, n_outputs)
-        self.inputs = InputSpace.scaled(np.ones(self.n_inputs)) if inputs is None else inputs
-        if self.inputs.n_inputs != self.n_inputs:
-            raise InvalidInput(f"inputs describes {self.inputs.n_inputs} inputs, not {n_inputs}")
+        space = InputSpace.scaled(np.ones(self.n_inputs)) if inputs is None else inputs
+        self.inputs = space.of(self.n_inputs)
         self.field = scalar(field, "field", least=1.0 / LARGEST)
         self.layers = count(layers, "layers")
         self.slots = count(slots, "slots")
@@ -140,19 +140,18 @@ class AlbusCMAC(Learner):
         return LearnedMany(errors, allocated)
 
     def _parts(self) -> Parts:
-        space = self.inputs
-        arrays = {"low": space.low, "high": space.high, "scales": space.scales}
-        arrays |= {"weights": self._weights, "owners": self._owners}
+        arrays: dict[str, Any] = {"weights": self._weights, "owners": self._owners}
         settings = {
             "field": self.field, "layers": self.layers, "slots": self.slots, "rate": self.rate,
             "displacements": list(self.displacements),
         }  # fmt: skip
-        return arrays, {"settings": settings, "collisions": self._collisions}
+        rest = {"settings": settings, "collisions": self._collisions}
+        return {**arrays, **self.inputs.arrays}, rest
 
     @classmethod
     def _restored(cls, arrays: dict[str, Array], rest: dict[str, Any]) -> Self:
         weights = arrays["weights"]
-        space = InputSpace(arrays["low"], arrays["high"], arrays["scales"])
+        space = InputSpace.of_arrays(arrays)
         cmac = cls(space.n_inputs, weights.shape[1], inputs=space, **rest["settings"])
         cmac._weights = shaped(weights, (cmac.slots, None), "weights").copy()
         cmac._owners = shaped(arrays["owners"], (cmac.slots,), "owners").astype(np.int64)

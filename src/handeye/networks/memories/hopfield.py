@@ -10,8 +10,7 @@ from numpy.typing import ArrayLike
 from handeye._compiled import compiled
 from handeye.arrays import Array, Integers, count, finite, shaped
 from handeye.errors import InvalidInput
-from handeye.io.tensors import write_tensors
-from handeye.networks.memories.learner import read_parts
+from handeye.io.tensors import restore, write_tensors
 
 FORMAT = "handeye.hopfield"
 VERSION = 1
@@ -114,7 +113,7 @@ class HopfieldMemory:
             memory._stored = count(rest["stored"], "stored", least=0)
             return memory
 
-        return read_parts(path, FORMAT, VERSION, restored)
+        return restore(path, FORMAT, VERSION, "a stored HopfieldMemory", restored)
 
     def __repr__(self) -> str:
         """Size and state."""

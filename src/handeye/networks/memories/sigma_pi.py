@@ -9,8 +9,9 @@ from numpy.typing import ArrayLike
 
 from handeye.arrays import Array, count, scalar, shaped
 from handeye.errors import InvalidInput
+from handeye.io.tensors import Parts
+from handeye.networks.checked import CheckedLearner
 from handeye.networks.memories import sigma_pi_kernels as kernels
-from handeye.networks.memories.learner import Learner, Parts
 from handeye.networks.outcomes import LearnedMany, LearningDiverged
 from handeye.networks.units import LARGEST
 
@@ -31,7 +32,7 @@ def monomials(n_inputs: int, degree: int) -> tuple[Product, ...]:
     )
 
 
-class SigmaPi(Learner):
+class SigmaPi(CheckedLearner):
     """m units whose inputs are products of the d inputs: a polynomial, learned online (eq A.4).
 
         I_k = sum_t w_kt a_t,    a_t = prod_p x_tp
@@ -58,7 +59,7 @@ class SigmaPi(Learner):
             before it are learned.
     """
 
-    _FORMAT = "handeye.sigma-pi"
+    FORMAT = "handeye.sigma-pi"
 
     def __init__(
         self, n_inputs: int, n_outputs: int, products: Sequence[Product], *, rate: float = 0.5

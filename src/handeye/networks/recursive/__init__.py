@@ -1,3 +1,4 @@
-"""Networks that learn by recursive least squares: error and cost of the second order."""
+"""Networks that learn by second-order steps: less error for more work."""
 
+from handeye.networks.recursive.kalman import KalmanNetwork as KalmanNetwork
 from handeye.networks.recursive.network import RecursiveNetwork as RecursiveNetwork

@@ -5,10 +5,9 @@ import numpy as np
 from handeye._compiled import compiled
 from handeye.arrays import Array, Booleans
 from handeye.networks.kernels import squared_distances, weighted_sum
-from handeye.networks.recursive.linear import DEPTH, squared_norm, substitute, subtract
+from handeye.networks.recursive.linear import DEPTH, PANEL, squared_norm, substitute, subtract
 from handeye.networks.recursive.units import (
     NOISE_WINDOW,
-    PANEL,
     Arrays,
     Pending,
     Progress,
@@ -141,15 +140,15 @@ def learn_stream(
             variance = own + max(spread[j] - squared_norm(row[0], q), 0.0)
             deviation = np.sqrt(variance)
             pending.coupling[q, q] = deviation
-            for p in range(q):
+            for p in range(known // DEPTH * DEPTH, q):
                 pending.coupling[p, q] = -row[0, p]
+            for p in range(q):
+                for k in range(errors.shape[1]):
+                    errors[i, k] += row[0, p] * pending.innovations[p, k]
             size = 0.0
             gain = max(1.0 / (trials + i + 1.0), 1.0 / NOISE_WINDOW)
             for k in range(errors.shape[1]):
                 e = errors[i, k]
-                for p in range(q):
-                    e += row[0, p] * pending.innovations[p, k]
-                errors[i, k] = e
                 pending.innovations[q, k] = e / deviation
                 noise[k] += gain * (e * e * own / variance - noise[k])
                 size += e * e

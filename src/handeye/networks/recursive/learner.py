@@ -1,5 +1,7 @@
 """The recursion itself, in scaled inputs: learn, consolidate, grow and prune."""
 
+from typing import Any
+
 import numpy as np
 
 from handeye.arrays import Array
@@ -10,6 +12,7 @@ from handeye.networks.recursive.posterior import (
     consolidate,
     current_weights,
     empty_posterior,
+    novel,
     refactor,
     unrepresented,
     with_block,
@@ -42,6 +45,15 @@ class Learner:
         self.points = np.empty((LONGEST, n_inputs))
         self._scratch = allocate_scratch(size)
         self._weights: Array | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but the scratch, which must be writable where the rest need not."""
+        return {name: value for name, value in self.__dict__.items() if name != "_scratch"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Scratch of its own."""
+        self.__dict__.update(state)
+        self._scratch = allocate_scratch(self.posterior.units.factor.shape[1])
 
     @property
     def n_neurons(self) -> int:
@@ -107,6 +119,17 @@ class Learner:
                 self._consolidate(self.settings.prune_tolerance if full else 0.0)
         return LearnedMany(errors, allocated)
 
+    def place(self, points: Array) -> None:
+        """Neurons of weight zero at points (N, d), as many as are novel and there is room for."""
+        while len(points):
+            room = LONGEST if self.capacity is None else self.capacity - self.n_neurons
+            some, points = np.split(points, [min(LONGEST, room)])
+            if room == 0:
+                return
+            self.points[: len(some)] = some
+            self.waiting = len(some)
+            self._consolidate(0.0)
+
     def prune(self, tolerance: float) -> int:
         """Consolidate, and remove neurons within the tolerance; returns how many."""
         return self._consolidate(tolerance)
@@ -138,17 +161,17 @@ class Learner:
         if tolerance > 0.0:  # before the new ones, which have done nothing yet
             refactor(self.posterior)
             removed = self._prune(tolerance)
-        added = 0
-        while added < self.waiting:
+        points = self.points[: self.waiting]
+        while len(points):
             counts = self.posterior.units.counts
             block = int(np.argmin(counts))
             free = self.settings.block - int(counts[block])
             if free == 0:
                 self.posterior = with_block(self.posterior)
                 continue
-            points = self.points[added : min(added + free, self.waiting)]
-            add_neurons(self.posterior, self.settings, block, points)
-            added += len(points)
+            some, points = points[:free], points[free:]
+            some = some[novel(self.posterior, self.settings, block, some)]
+            add_neurons(self.posterior, self.settings, block, some)
         self.waiting = 0
         refactor(self.posterior)
         return removed

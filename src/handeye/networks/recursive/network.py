@@ -1,24 +1,24 @@
 """A resource-allocating network that learns its weights by recursive least squares."""
 
-from copy import deepcopy
-from os import PathLike
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from handeye.arrays import Array, count, scalar, shaped
 from handeye.errors import InvalidInput
+from handeye.io.tensors import Parts
+from handeye.networks.checked import CheckedLearner
 from handeye.networks.inputs import InputSpace
-from handeye.networks.outcomes import Learned, LearnedMany
-from handeye.networks.recursive import storage
+from handeye.networks.outcomes import LearnedMany
 from handeye.networks.recursive.evidence import relevance
 from handeye.networks.recursive.learner import Learner
+from handeye.networks.recursive.storage import learner_parts, restore_learner
 from handeye.networks.recursive.units import Settings
 from handeye.networks.units import moderate
 
 
-class RecursiveNetwork:
+class RecursiveNetwork(CheckedLearner):
     """Learns a mapping from R^d to R^m, one sample at a time, by second-order steps.
 
     The output is `sum_j w_j o_j`, `o_j = exp(-|(x - c_j) / scales|^2 / 2)`. As in Platt's
@@ -35,8 +35,9 @@ class RecursiveNetwork:
     - Samples are consolidated a few hundred at a time. Until then they take part through the
       covariance of their errors, which is exact: every error and every prediction is that of the
       recursion sample by sample. A new neuron starts from weight zero and answers from the next
-      consolidation on.
-    - The scales are those that make the first samples most probable; then these are learned anew.
+      consolidation on, if neither the others nor those that came with it represent it.
+    - The scales are those that make the first samples most probable; then these are learned anew by
+      neurons that are all there from the beginning.
 
     A sample costs `n (b + q) / 2` multiplications for n neurons in blocks of b, q samples pending,
     and consolidations about as much again.
@@ -53,6 +54,8 @@ class RecursiveNetwork:
         forgetting: weight of the past at each sample; 1 remembers everything, below it the last
             1 / (1 - forgetting) samples count. The prior is never forgotten.
         distance_threshold: theta_d, a new neuron is at least that far from others, in scales.
+        novelty: a new neuron stays only if the prior variance that others do not represent is more
+            than this part of the noise; 0 keeps all. Few inputs then need few neurons.
         error_threshold: theta_e, a neuron is added only for a larger |error|, in output units.
         prune_tolerance: when the capacity is reached, neurons are pruned that together change the
             outputs at what was learned by no more than this root mean square, in output units.
@@ -63,6 +66,8 @@ class RecursiveNetwork:
         InvalidInput: a setting out of range, here or in any method an array of the wrong shape or
             type or with values that are not finite; nothing has changed then.
     """
+
+    FORMAT = "handeye.recursive_network"
 
     def __init__(
         self,
@@ -75,17 +80,15 @@ class RecursiveNetwork:
         noise_ratio: float = 0.01,
         forgetting: float = 1.0,
         distance_threshold: float = 0.05,
+        novelty: float = 0.01,
         error_threshold: float = 0.0,
         prune_tolerance: float = 0.0,
         relevance_samples: int | None = 500,
     ) -> None:
-        self.n_inputs = count(n_inputs, "n_inputs")
-        self.n_outputs = count(n_outputs, "n_outputs")
+        super().__init__(n_inputs, n_outputs)
         if inputs is None:
             inputs = InputSpace.scaled(np.full(self.n_inputs, np.sqrt(self.n_inputs)))
-        if inputs.n_inputs != self.n_inputs:
-            raise InvalidInput(f"inputs describes {inputs.n_inputs} inputs, not {n_inputs}")
-        self.inputs = inputs
+        self.inputs = inputs.of(self.n_inputs)
         self.capacity = None if capacity is None else count(capacity, "capacity")
         first = 0 if relevance_samples is None else relevance_samples
         self.settings = Settings(
@@ -93,6 +96,7 @@ class RecursiveNetwork:
             noise_ratio=scalar(noise_ratio, "noise_ratio", least=1e-8),
             forgetting=scalar(forgetting, "forgetting", least=0.5),
             distance_threshold=scalar(distance_threshold, "distance_threshold", least=0.0),
+            novelty=scalar(novelty, "novelty", least=0.0),
             error_threshold=scalar(error_threshold, "error_threshold", least=0.0),
             prune_tolerance=scalar(prune_tolerance, "prune_tolerance", least=0.0),
             relevance_samples=count(first, "relevance_samples", least=0),
@@ -106,18 +110,12 @@ class RecursiveNetwork:
             )
         self._learner = Learner(self.n_inputs, self.n_outputs, self.capacity, self.settings)
         self._scales = np.array(self.inputs.scales)
-        self._trials = 0
         self._first = np.empty((0, self.n_inputs + self.n_outputs))
 
     @property
     def n_neurons(self) -> int:
         """Neurons allocated so far, with those that answer only from the next consolidation on."""
         return self._learner.n_neurons + self._learner.waiting
-
-    @property
-    def trials(self) -> int:
-        """Samples learned so far."""
-        return self._trials
 
     @property
     def scales(self) -> Array:
@@ -139,14 +137,6 @@ class RecursiveNetwork:
         """Estimated standard deviation of what no network could predict, (m,); a copy."""
         return np.sqrt(self._learner.noise)
 
-    def predict(self, x: ArrayLike) -> Array:
-        """Output (m,) at one input (d,); zero where no neuron answers."""
-        return self._learner.predict(self._scaled(shaped(x, (self.n_inputs,), "x")[np.newaxis]))[0]
-
-    def predict_many(self, x: ArrayLike) -> Array:
-        """Outputs (N, m) at inputs (N, d)."""
-        return self._learner.predict(self._scaled(shaped(x, (None, self.n_inputs), "x")))
-
     def variance(self, x: ArrayLike) -> Array:
         """Variance of target minus output (m,) at one input (d,), the noise included."""
         return self.variance_many(shaped(x, (self.n_inputs,), "x")[np.newaxis])[0]
@@ -161,21 +151,6 @@ class RecursiveNetwork:
         """
         return self._learner.variance(self._scaled(shaped(x, (None, self.n_inputs), "x")))
 
-    def learn(self, x: ArrayLike, target: ArrayLike) -> Learned:
-        """Learn one sample, x (d,) and target (m,)."""
-        one = shaped(x, (self.n_inputs,), "x")[np.newaxis]
-        known = shaped(target, (self.n_outputs,), "target")[np.newaxis]
-        error, allocated = self._learn(one, known)
-        return Learned(error[0], bool(allocated[0]))
-
-    def learn_many(self, x: ArrayLike, target: ArrayLike) -> LearnedMany:
-        """Learn N samples in order, x (N, d) and target (N, m); the same result as one by one."""
-        inputs = shaped(x, (None, self.n_inputs), "x")
-        targets = shaped(target, (None, self.n_outputs), "target")
-        if len(inputs) != len(targets):
-            raise InvalidInput(f"x has {len(inputs)} samples but target has {len(targets)}")
-        return self._learn(inputs, targets)
-
     def prune(self, tolerance: float) -> int:
         """Remove neurons that matter least; returns how many.
 
@@ -184,19 +159,6 @@ class RecursiveNetwork:
         added later, and with more than one block).
         """
         return self._learner.prune(scalar(tolerance, "tolerance", least=0.0))
-
-    def copy(self) -> Self:
-        """An independent network in the same state."""
-        return deepcopy(self)
-
-    def save(self, path: str | PathLike[str]) -> None:
-        """Write everything to one safetensors file, replacing an old one only once complete."""
-        storage.save(self, path)
-
-    @staticmethod
-    def load(path: str | PathLike[str]) -> "RecursiveNetwork":
-        """The network that `save` wrote; FileFormatError for any other file."""
-        return storage.load(path)
 
     def __repr__(self) -> str:
         """Shape and state."""
@@ -210,9 +172,14 @@ class RecursiveNetwork:
         with np.errstate(over="ignore"):
             return moderate(inputs / self._scales, "inputs over scales")
 
+    def _inputs(self, x: Array) -> Array:
+        self._scaled(x)
+        return x  # scales may change while a stream is learned
+
+    def _predict(self, inputs: Array) -> Array:
+        return self._learner.predict(self._scaled(inputs))
+
     def _learn(self, inputs: Array, targets: Array) -> LearnedMany:
-        self._scaled(inputs)
-        moderate(targets, "target")
         first = self.settings.relevance_samples
         until = max(0, min(len(inputs), first - self._trials))
         parts: list[LearnedMany] = []
@@ -226,21 +193,44 @@ class RecursiveNetwork:
                     self._begin_again()
         return LearnedMany(*(np.concatenate(both) for both in zip(*parts, strict=True)))
 
-    def _take_over(self, learner: Learner, scales: Array, trials: int, first: Array) -> None:
-        """Go on from a stored state."""
-        self._learner, self._scales, self._trials, self._first = learner, scales, trials, first
-
     def _begin_again(self) -> None:
         """Estimate scales and noise from the first samples, and learn these anew."""
         inputs, targets = np.split(self._first, [self.n_inputs], axis=1)
         found = relevance(inputs, targets)
-        self._scales = found.scales
-        self._learner = Learner(
-            self.n_inputs,
-            self.n_outputs,
-            self.capacity,
-            self.settings._replace(noise_ratio=found.noise_ratio),
-        )
+        self._scales, self._first = found.scales, self._first[:0]
+        settings = self.settings._replace(noise_ratio=found.noise_ratio)
+        self._learner = Learner(self.n_inputs, self.n_outputs, self.capacity, settings)
+        # A neuron that comes later knows of earlier samples only what others tell it.
+        self._learner.place(self._scaled(inputs))
         self._learner.learn(self._scaled(inputs), targets)
         self._learner.noise, self._learner.signal = found.noise, found.signal
-        self._first = self._first[:0]
+
+    def _parts(self) -> Parts:
+        arrays, rest = learner_parts(self._learner)
+        arrays |= {
+            "low": self.inputs.low,
+            "high": self.inputs.high,
+            "box_scales": self.inputs.scales,
+            "scales": self._scales,
+            "first": self._first,
+        }
+        settings = self.settings._asdict()
+        return arrays, rest | {
+            "n_inputs": self.n_inputs,
+            "n_outputs": self.n_outputs,
+            "capacity": self.capacity,
+            "settings": settings,
+        }
+
+    @classmethod
+    def _restored(cls, arrays: dict[str, Array], rest: dict[str, Any]) -> Self:
+        d, m = rest["n_inputs"], rest["n_outputs"]
+        space = InputSpace(arrays["low"], arrays["high"], arrays["box_scales"])
+        settings = {"novelty": 0.0} | rest["settings"]  # the first version kept every neuron
+        network = cls(d, m, inputs=space, capacity=rest["capacity"], **settings)
+        network._scales = shaped(arrays["scales"], (d,), "scales")
+        if not np.all(network._scales > 0.0):
+            raise InvalidInput("scales must be positive")
+        network._first = shaped(arrays["first"], (None, d + m), "first")
+        restore_learner(network._learner, arrays, rest)
+        return network

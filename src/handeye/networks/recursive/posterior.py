@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from handeye._compiled import compiled
-from handeye.arrays import Array
+from handeye.arrays import Array, Integers
 from handeye.networks.kernels import squared_distances
 from handeye.networks.recursive.linear import (
     add_squares,
@@ -25,7 +25,7 @@ from handeye.networks.recursive.units import (
 from handeye.networks.responses import Gaussian, respond
 
 _NUGGET = 1e-6  # added to a neuron's own overlap: neighbours may then be as close as they like
-_ROUNDING = 1e-14  # of the largest information times the neurons: below lies only rounding
+_ROUNDING = 1e-16  # of the largest information times the neurons: below lies only rounding
 
 
 class Posterior(NamedTuple):
@@ -90,11 +90,46 @@ def refactor(posterior: Posterior) -> None:
     units = posterior.units
     for b, n in enumerate(units.counts):
         total = units.factor[b, :n, :n]
-        np.add(posterior.prior[b, :n, :n], posterior.information[b, :n, :n], out=total)
-        # After very many samples the prior is lost in rounding; then it counts as this much.
-        diagonal = np.einsum("ii->i", total)
-        diagonal += _ROUNDING * n * diagonal.max(initial=0.0)
-        factorize(total)
+        # After very many samples the prior is lost in rounding; then it counts as this much, and
+        # as more if that does not suffice.
+        for rounding in _ROUNDING * n * 10.0 ** np.arange(12):
+            np.add(posterior.prior[b, :n, :n], posterior.information[b, :n, :n], out=total)
+            diagonal = np.einsum("ii->i", total)
+            diagonal += rounding * diagonal.max(initial=0.0)
+            if factorize(total):
+                break
+
+
+def novel(posterior: Posterior, settings: Settings, b: int, points: Array) -> Integers:
+    """Which of the points (N, d) neither the neurons of block b nor each other represent.
+
+    That of which most is missing, `1 - k^T K^-1 k`, is taken first, until no more than the novelty
+    times the noise ratio is missing of any: what a neuron there could add to the outputs is then
+    far below the noise (Csato and Opper 2002; Engel, Mannor and Meir 2004). Returned in order.
+    """
+    n = posterior.units.counts[b]
+    columns = np.empty((n + len(points), len(points)))
+    missing = np.full(len(points), 1.0 + _NUGGET)
+    if n:
+        overlaps = np.empty((len(points), n))
+        overlap_stream(posterior.units.centers[b, :, :n], points, overlaps)
+        factor = upper_factor(posterior.prior[b, :n, :n])
+        columns[:n] = np.sqrt(settings.noise_ratio) * whitened(factor, overlaps.T)
+        missing -= (columns[:n] ** 2).sum(axis=0)
+    among = np.empty((len(points), len(points)))
+    overlap_stream(np.ascontiguousarray(points.T), points, among)
+    chosen: list[int] = []
+    while len(chosen) < len(points):
+        most = int(np.argmax(missing))
+        if missing[most] <= _NUGGET + settings.novelty * settings.noise_ratio:
+            break
+        known = columns[: n + len(chosen)]
+        column = (among[most] - known[:, most] @ known) / np.sqrt(missing[most])
+        columns[n + len(chosen)] = column
+        missing -= column**2
+        missing[most] = 0.0
+        chosen.append(most)
+    return np.sort(np.array(chosen, np.int64))
 
 
 def add_neurons(posterior: Posterior, settings: Settings, b: int, points: Array) -> None:

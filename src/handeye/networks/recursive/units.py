@@ -5,10 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from handeye.arrays import Array, Integers
-from handeye.networks.recursive.linear import DEPTH
-
-PANEL = 32
-"""Samples whose systems are solved together: the factor is then read once for all of them."""
+from handeye.networks.recursive.linear import DEPTH, PANEL
 
 LONGEST = 512
 """Most samples between two consolidations."""
@@ -54,6 +51,7 @@ class Settings(NamedTuple):
     noise_ratio         variance of the noise over the prior variance of the function
     forgetting          weight of the past at each new sample
     distance_threshold  theta_d: a neuron is added only farther than this from every other
+    novelty             a neuron is added only where more is missing, over the noise ratio
     error_threshold     theta_e: a neuron is added only for a larger error
     prune_tolerance     root mean square by which one pruning may change past outputs; 0: none
     relevance_samples   samples from which the scales are estimated; 0: the given ones stay
@@ -63,6 +61,7 @@ class Settings(NamedTuple):
     noise_ratio: float
     forgetting: float
     distance_threshold: float
+    novelty: float
     error_threshold: float
     prune_tolerance: float
     relevance_samples: int
