@@ -80,8 +80,14 @@ def test_a_surprising_arm_goes_on_being_moved_by_the_net_believed_in(tmp_path):
     assert np.all(seen.voltage[unsure & seen.sensed.active] != 0.0)
 
 
-def test_the_goal_is_the_predicted_crossing_plus_the_corrections():
-    traces = practice.test(trained("thesis"), WORLD, throws(6, 7), arm=1, ball=0).traces
+def test_the_goal_is_the_predicted_crossing_plus_the_corrections(tmp_path):
+    learner = copied(trained("thesis"), tmp_path)
+    grid = np.stack(np.meshgrid([-2.0, 0.0, 2.0], [-1.0, 0.0, 1.0], [0.0, 0.5, 1.0]), -1)
+    inputs = grid.reshape(-1, 3)
+    learner.repertoire.corrections[1].practise(inputs, np.tile([0.04, -0.08], (len(inputs), 1)))
+    traces = practice.test(learner, WORLD, throws(6, 7), arm=1, ball=0).traces
+    for name in ("correction_x", "correction_time"):
+        assert np.nanmax(np.abs(traces[name])) > 0.02
     np.testing.assert_array_equal(traces["stop_x"], traces["crossing_x"] + traces["correction_x"])
     np.testing.assert_array_equal(
         traces["stop_time"], traces["crossing_time"] + traces["correction_time"]

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from typing import Any, cast
 
 import numpy as np
@@ -94,6 +95,24 @@ def test_a_deflected_ball_counts_as_predicted_just_before():
     # The hand-made record predicts half a metre and 0.2 s more than was observed.
     np.testing.assert_allclose(spy.inputs[:, 1], 2.0 - STOPPED)
     np.testing.assert_allclose(spy.outputs[:, 0], THESIS.largest_correction[0])
+
+
+def test_what_was_predicted_after_the_touch_does_not_count():
+    learner = Learner()
+    spy = cast("Any", Spy(learner.repertoire.corrections[1]))
+    learner.repertoire.corrections[1] = spy
+    deflected = record(STOPPED, crossing=(1.5, 0.9), contact_time=0.88)
+    deflected.traces["crossing_x"][deflected.sensed.time > 0.88] = -7.0
+    learner.learn_catch(deflected)
+    np.testing.assert_allclose(spy.inputs[:, 1], 2.0 - STOPPED)
+
+
+def test_how_early_is_a_setting():
+    learner = Learner(replace(THESIS, arrive_early=0.15))
+    spy = cast("Any", Spy(learner.repertoire.corrections[1]))
+    learner.repertoire.corrections[1] = spy
+    learner.learn_catch(record(STOPPED, crossing=(1.5, 0.75)))
+    np.testing.assert_allclose(spy.outputs[:, 1], 0.75 - 0.575 - 0.15)
 
 
 def test_a_throw_with_an_unknown_arm_teaches_nothing():

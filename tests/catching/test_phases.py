@@ -1,6 +1,6 @@
 import numpy as np
 
-from handeye.catching.phases import DONE, MOVING, REST, WAITING, PursuitPhases
+from handeye.catching.phases import DONE, FAST, MOVING, REST, WAITING, PursuitPhases
 
 YES, NO = np.array([True]), np.array([False])
 
@@ -54,6 +54,14 @@ def test_standing_before_the_first_movement_is_no_completion():
     assert all(advance(phases, v=0.0) for _ in range(3 * REST))
 
 
+def test_creeping_is_no_pursuit_that_could_come_to_rest():
+    phases = PursuitPhases(1, 0.05, repeated=False)
+    assert advance(phases)
+    assert all(advance(phases, v=v) for v in (FAST * 0.049, *[0.0] * (2 * REST)))
+    assert advance(phases, v=FAST * 0.051)
+    assert not come_to_rest(phases)
+
+
 def test_a_pursuit_is_over_when_its_arrival_is_due():
     phases = moving()
     assert not advance(phases, v=1.0, t=0.0)
@@ -72,3 +80,9 @@ def test_lost_comprehension_breaks_a_pursuit_off_until_it_returns():
     assert not advance(phases, understood=False, v=1.0)
     assert phases.phase[0] == WAITING
     assert advance(phases, v=1.0)
+
+
+def test_a_pursuit_that_begins_again_has_not_been_fast_yet():
+    phases = moving()
+    advance(phases, understood=False, v=1.0)
+    assert all(advance(phases, v=0.0) for _ in range(3 * REST))

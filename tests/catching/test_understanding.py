@@ -37,12 +37,12 @@ class Recogniser:
 
 
 class Scene:
-    def __init__(self, believed, recogniser, *, try_all=False):
+    def __init__(self, believed, recogniser, *, try_all=False, laws=(1.0, 2.0)):
         n = len(believed)
         self.memory = ShortTermMemory(["x", *discrepancy_streams("ball", 2)], 12, n)
         self.recogniser = recogniser
         self.thing = Understanding(
-            "ball", cast("Any", [Constant(1.0), Constant(2.0)]), recogniser, Comparator((0.1,)),
+            "ball", cast("Any", [*map(Constant, laws)]), recogniser, Comparator((0.1,)),
             np.array(believed), try_all=try_all,
         )  # fmt: skip
         self.x = np.zeros(n)
@@ -119,3 +119,22 @@ def test_trying_all_asks_the_recogniser_between_equals():
     scene.ticks(4, 1.5)
     assert scene.thing.identity[0] == 1
     assert not scene.thing.comprehended[0]
+
+
+def test_who_is_tried_after_poor_predictions_gets_new_ones():
+    scene = Scene([-1], Recogniser([1]), try_all=True)
+    scene.ticks(6, 1.5)
+    assert scene.thing.identity[0] == 1
+    assert np.isnan(scene.thing.surprise[0])
+    scene.ticks(1, 1.5)
+    assert scene.thing.identity[0] == -1
+
+
+def test_one_surprise_is_no_proof_of_a_change():
+    scene = Scene([0], Recogniser([1]), try_all=True, laws=(1.0, 1.08))
+    scene.ticks(12, 1.0)
+    scene.x -= 0.7
+    scene.ticks(1, 1.0)
+    assert scene.thing.identity[0] == -1
+    scene.ticks(4, 1.08)  # the other is clearly better, but the first is good enough
+    assert scene.thing.identity[0] == 0

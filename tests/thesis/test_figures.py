@@ -13,7 +13,7 @@ from handeye.thesis.claims import claims_by_id
 from handeye.thesis.experiments import EXPERIMENTS
 from handeye.thesis.figures import FIGURES, TOPICS, Drawn, NotDrawn, drawable, find_figure
 from handeye.thesis.figures.layout import beside, single, stacked
-from handeye.thesis.figures.lines import STATED, Panel, band, ends, function, line, until
+from handeye.thesis.figures.lines import STATED, Line, Panel, band, ends, function, line, until
 from handeye.thesis.judge import t_interval
 from handeye.thesis.records import Record, Records
 from handeye.thesis.reproduce import figure_number
@@ -185,6 +185,22 @@ def test_a_stated_value_beyond_a_shortened_run_is_left_out():
 def test_a_stated_value_off_the_lines_is_within_the_axis():
     made = single([line(RECORDS, "e/a/error", "a", "after")], Panel(stated=[(0.0, 0.5, "after")]))
     assert made.axes[0].get_ylim()[1] > 50.0
+
+
+@pytest.mark.parametrize(("high", "top"), [(1.0, 1.12), (1.8, 1.8), (9.0, 2.0)])
+def test_a_band_is_in_view_unless_it_would_press_the_line_down(high, top):
+    x, mean = np.array([0.0, 1.0]), np.array([0.5, 1.0])
+    drawn = Line("", x, mean, mean - 0.1, np.array([0.6, high]), "after")
+    made = single([drawn], Panel(unit="%", scale="zero"))
+    assert made.axes[0].get_ylim() == pytest.approx((0.0, top))
+
+
+def test_less_than_nothing_has_a_minus_sign():
+    x = np.array([0.0, 1.0])
+    made = single([function("", x, np.array([-1.0, 1.0]), "after")], Panel(unit="", scale="zero"))
+    ticks = {tick.get_text() for tick in made.axes[0].get_yticklabels()}
+    assert "\N{MINUS SIGN}1" in ticks
+    assert not any("-" in text for text in ticks)
 
 
 def test_lengths_of_very_different_size_have_their_own_units():

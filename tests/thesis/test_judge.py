@@ -11,6 +11,7 @@ from handeye.intervals import wilson_interval
 from handeye.thesis.claims import Also, Claim, Rule
 from handeye.thesis.judge import SHARE, agrees, judge, t_interval
 from handeye.thesis.records import Record, Records
+from handeye.thesis.shapes import SHAPES, Finding
 
 VALUED: tuple[Rule, ...] = ("within", "at_most", "at_least")
 CLAIM = Claim("made-up", "1.1", "a length", "within", 0.01, "m", 0.1, measure="x/y/error")
@@ -70,6 +71,23 @@ def test_the_mean_is_judged_whatever_single_replicates_are():
     assert row.measured == pytest.approx(0.012)
     assert row.stated == 0.01
     assert row.unit == "m"
+
+
+@pytest.mark.parametrize(
+    ("error", "holds", "verdict"),
+    [
+        (0.01, True, "reproduced"), (0.01, False, "not reproduced"), (0.02, True, "not reproduced"),
+    ],
+)  # fmt: skip
+def test_a_figure_with_a_predicate_keeps_both_or_neither(
+    error: float, holds: bool, verdict: str, monkeypatch: pytest.MonkeyPatch
+):
+    found = Finding((holds, holds), holds, "What decides.")
+    monkeypatch.setitem(SHAPES, CLAIM.id, lambda records, limits: found)  # noqa: ARG005
+    row = judge(CLAIM, recorded(error, error))
+    assert row.verdict == verdict
+    assert row.measured == pytest.approx(error)
+    assert row.note.startswith("What decides.")
 
 
 @given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=30))

@@ -83,6 +83,29 @@ def test_another_pursuit_helps_while_little_is_known(
     assert learned("repeated-pursuit", measured).holds is holds
 
 
+@pytest.mark.parametrize(
+    ("changed", "holds"),
+    [
+        ({}, True), ({"rms": 0.0399}, True), ({"rms": 0.0401}, False), ({"caught": 0.9}, True),
+        ({"caught": 0.899}, False), ({"early": 0.149}, True), ({"early": 0.151}, False),
+        ({"early": 0.049}, False),
+    ],
+)  # fmt: skip
+def test_a_mentor_helps_only_if_the_arm_comes_nearer_in_time_and_catches(
+    changed: dict[str, float], holds: bool
+):
+    before = {"rms": 0.04, "caught": 0.9, "early": 0.3}
+    after = {"rms": 0.02, "caught": 0.95, "early": 0.1} | changed
+    measured = {
+        f"{way}_{name}": value
+        for way, quantities in (("pursuits", before), ("mentored", after))
+        for name, value in quantities.items()
+    }
+    found = learned("mentor", measured)
+    assert found.holds is holds
+    assert found.held == (holds,) * REPLICATES
+
+
 @pytest.mark.parametrize("late", ["", "bounce", "collision", "changed_arm"])
 def test_surprises_come_soon(late: str):
     at = TICKS.astype(float)

@@ -29,15 +29,19 @@ class Repertoire:
         def each(table: signals.Table, tuning: Tuning, number: int) -> list[Skill]:
             return [Skill(table, tuning) for _ in range(number)]
 
-        def recogniser(table: signals.Table, tuning: Tuning, number: int) -> Recogniser:
-            return Recogniser(table, tuning, settings.recognition_threshold, number)
-
         motor = signals.PROFILE if settings.profiles else signals.MOTOR_COMMAND
         return cls(
-            recogniser(signals.BALL_RECOGNITION, settings.ball_recognition, n_balls),
+            Recogniser(
+                signals.BALL_RECOGNITION,
+                settings.ball_recognition,
+                settings.ball_threshold,
+                n_balls,
+            ),
             each(signals.BALL_STATE, settings.ball_state, n_balls),
             each(signals.BALL_CROSSING, settings.ball_crossing, n_balls),
-            recogniser(signals.ARM_RECOGNITION, settings.arm_recognition, n_arms),
+            Recogniser(
+                signals.ARM_RECOGNITION, settings.arm_recognition, settings.arm_threshold, n_arms
+            ),
             each(signals.ARM_STATE, settings.arm_state, n_arms),
             each(motor, settings.motor_command, n_arms),
             each(signals.CATCH_CORRECTION, settings.catch_correction, n_arms),

@@ -56,8 +56,10 @@ class CatcherSettings:
 
     And what the thesis states no number for:
 
-    recognition_threshold  activity that a line of a recognition net needs: a right one rises to 1,
-                           and what is asked again at the next tick need not be guessed
+    ball_threshold         activity that a line of the ball recognition net needs: a right one
+                           rises to 1. Balls are told apart at the sixth tick, with time to lose
+    arm_threshold          the same of the arm recognition net: what is asked again at the next
+                           tick need not be guessed
     ball_comparator        thresholds of dx, dz [m], vx, vz [m/s] over a tick: so that of 100 balls
                            taken for the other 99 are found out in six comparisons, and of 100 known
                            ones 5 surprise during the flight
@@ -103,7 +105,8 @@ class CatcherSettings:
     ball_recognition: Tuning = Tuning((2.0, 4.0, 0.05, 0.1, 0.15, 0.3, 0.25, 0.5), (1.0,), 0.05)
     ball_state: Tuning = Tuning((8.0, 2.0, 0.4, 0.1), (0.05, 0.05, 2.0, 2.0), 0.02)
     ball_crossing: Tuning = Tuning((4.0, 0.5, 0.3, 0.3, 3.0), (1.0, 1.0, 1.0), 0.05)
-    recognition_threshold: float = 0.9
+    ball_threshold: float = 0.5
+    arm_threshold: float = 0.9
     ball_comparator: Comparator = Comparator((0.016, 0.016, 0.32, 0.32))  # noqa: RUF009 (frozen)
     arm_comparator: Comparator = Comparator((0.006, 0.12, 0.6))  # noqa: RUF009
     reach: float = 0.05
@@ -121,7 +124,7 @@ class CatcherSettings:
     profiles: bool = False
 
     def __post_init__(self) -> None:
-        for name in ("reach", "rest_speed", "recognition_threshold"):
+        for name in ("reach", "rest_speed", "ball_threshold", "arm_threshold"):
             scalar(getattr(self, name), name, above=0.0)
         for name in ("arrive_early", "excitation", "lead"):
             scalar(getattr(self, name), name, least=0.0)
@@ -176,7 +179,7 @@ IMPROVED = replace(
     ball_crossing=Tuning((4.0, 4.0, 0.2, 0.2, 1.0), (1.0, 1.0, 1.0), 0.005, 3.0, 2),
     ball_comparator=Comparator((0.01, 0.01, 0.2, 0.2)),
     arm_comparator=Comparator((0.015, 0.3, 2.0)),
-    recognition_threshold=0.5,
+    arm_threshold=0.5,
     reach=0.03,
     least_amplitude=0.03,
     repeated=True,

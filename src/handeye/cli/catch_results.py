@@ -30,9 +30,9 @@ def tested(course: Course, throws: int, beginning: Beginning, settings: str) -> 
         cpu_seconds=course.cpu_seconds,
         settings={
             "settings": settings,
-            "pursuits with each arm": f"{plan.pursuits:,}",
-            "tosses of each ball": f"{plan.tosses:,}",
-            "throws with the mentor": f"{plan.mentored:,}",
+            "pursuits with each arm": f"{min(learner.pursuits[arm] for arm in plan.arms):,}",
+            "tosses of each ball": f"{min(learner.tosses[ball] for ball in plan.balls):,}",
+            "throws with the mentor": f"{learner.mentored:,}",
             "ball and arm at the start of a test throw": beginning,
             "replicate": str(plan.replicate),
         },

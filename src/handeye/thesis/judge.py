@@ -50,6 +50,8 @@ class Row:
 def judge(claim: Claim, records: Records, *, deterministic: bool = False) -> Row:
     """The row of a claim that has a measure, from the records of its experiments.
 
+    A claim that states a figure and more than that has a predicate too: it keeps both or neither.
+
     deterministic: nothing in them is random, so that the interval has no width.
 
     Raises:
@@ -69,7 +71,12 @@ def judge(claim: Claim, records: Records, *, deterministic: bool = False) -> Row
     interval = (mean, mean) if deterministic else t_interval(values)
     if interval is None:
         notes.append("One replicate: no interval.")
-    verdict = _verdict(claim, agrees(claim, mean))
+    kept = agrees(claim, mean)
+    if claim.id in SHAPES:
+        finding = SHAPES[claim.id](records, claim.limits)
+        kept = kept and finding.holds
+        notes.insert(0, finding.note)
+    verdict = _verdict(claim, kept)
     return _row(claim, mean, interval, len(values), verdict, notes)
 
 

@@ -13,11 +13,13 @@ from handeye.calibration.arm import ArmEstimator, ArmSheet, CurveTerms
 from handeye.calibration.arm.estimator import FINE
 from handeye.calibration.calibrators import NetworkCorrection, Nominal
 from handeye.calibration.combined import Combined
-from handeye.calibration.log_run import place
+from handeye.calibration.log_run import calibrate_log
+from handeye.calibration.placed import place
 from handeye.calibration.placed_arm import PlacedArm
 from handeye.calibration.session import AnyCalibrator
 from handeye.errors import InvalidInput
 from handeye.geometry import wxyz_from_matrix
+from handeye.io.records import Log
 from handeye.observations import PointObservation
 from handeye.robots.urdf import UrdfArm
 from handeye.thesis.experiment import Curve, Effort, Quantities
@@ -47,7 +49,7 @@ def learner_for(name: str, model: PlacedArm, effort: Effort) -> AnyCalibrator:
     """A calibrator that has seen nothing; with less effort, of arms with fewer harmonics.
 
     placement: nominal arm. network: a correction of where it puts the marker. geometry and curves:
-    all rows at once, without error curves and with them. combined: the default, row by row.
+    all rows at once, without error curves and with them. combined: the default, live, row by row.
     """
     match name:
         case "placement":
@@ -101,10 +103,18 @@ def fr3(setting: Knowing, replicate: int, effort: Effort) -> Quantities:
 def _left_out(
     setting: Knowing, arm: UrdfArm, seen: PointObservation, test: Integers, effort: Effort
 ) -> Quantities:
-    train = np.setdiff1d(np.arange(len(seen)), test)
-    calibrator = learner_for(setting.learner, _placed(arm, seen[train]), effort)
-    calibrator.observe_many(seen[train])
+    some = seen[np.setdiff1d(np.arange(len(seen)), test)]
+    if setting.learner == "combined":
+        return _summary(_default(arm, some).errors(seen[test]))
+    calibrator = learner_for(setting.learner, _placed(arm, some), effort)
+    calibrator.observe_many(some)
     return _summary(calibrator.errors(seen[test]))
+
+
+def _default(arm: UrdfArm, seen: PointObservation) -> AnyCalibrator:
+    """What `handeye calibrate` makes of a log of these rows."""
+    log = Log("", arm.joint_names, seen, np.arange(len(seen)))
+    return calibrate_log(log, arm, validate="none").calibrator
 
 
 def _in_order(setting: Knowing, arm: UrdfArm, seen: PointObservation, effort: Effort) -> Quantities:

@@ -13,8 +13,8 @@ import numpy as np
 
 from handeye.arrays import Array, Integers
 from handeye.calibration.arm.measurements import Points, Touches
-from handeye.calibration.arm.mixed import fit_measurements
 from handeye.calibration.arm.sheet import ArmSheet
+from handeye.calibration.setups.fit import fit_measurements
 from handeye.errors import InvalidInput
 from handeye.geometry import transform
 from handeye.robots.urdf import UrdfArm

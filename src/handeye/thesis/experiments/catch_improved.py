@@ -61,7 +61,7 @@ CHANGES: dict[str, tuple[str, ...]] = {
     "replayed samples and wide neurons": (
         "arm_state", "motor_command", "ball_recognition", "ball_state", "ball_crossing",
     ),
-    "its own comparators": ("ball_comparator", "arm_comparator", "recognition_threshold"),
+    "its own comparators": ("ball_comparator", "arm_comparator", "arm_threshold"),
     "gentle practice": ("gentle", "least_amplitude"),
     "repeated pursuits": ("repeated", "reach"),
     "trying every identity": ("try_all",),

@@ -99,7 +99,9 @@ def beliefs(world: World, learner: Learner, replicate: int, effort: Effort) -> Q
                         with heavy arm and ball, the arm taken for the light one
     <arm>_arm_recognised_20, <arm>_arm_recognised, arm_recognised_20
                         share of throws of the heavy ball in which an arm that is taken for the
-                        other is recognised; the last is of both arms
+                        other is recognised: whom the learner names last counts; the last is of
+                        both arms
+    <arm>_arm_named     share of the fresh ones in which it is named at some tick
     changed_arm_noticed share of heavy arms taken for the light one that surprise within each of
                         TICKS after the first command
     """
@@ -116,9 +118,11 @@ def beliefs(world: World, learner: Learner, replicate: int, effort: Effort) -> Q
     for name, arm in BALLS.items():
         tests = throws_for(HEAVY, arm, replicate, effort)
         played = play(world, tests.throws, learner.catcher(arm=1 - arm, ball=HEAVY))
-        right = last_known(played.traces["arm"]) == arm
+        named = played.traces["arm"]
+        right, once = last_known(named) == arm, np.any(named == arm, axis=0)
         measured[f"{name}_arm_recognised_20"] = float(right[: tests.sequence].mean())
         measured[f"{name}_arm_recognised"] = float(right[tests.sequence :].mean())
+        measured[f"{name}_arm_named"] = float(once[tests.sequence :].mean())
         if arm == HEAVY:
             found = summary(played, tests.sequence)
             measured |= {f"wrong_arm_{key}": value for key, value in found.items()}

@@ -34,8 +34,9 @@ NETWORKS = {"normal": 500, "large": 500, "local": 205}
 
 def calibration_curve(setting: Learning | Estimating, replicate: int, effort: Effort) -> Quantities:
     """`learning_curve` or `estimation_curve`."""
-    measure = learning_curve if isinstance(setting, Learning) else estimation_curve
-    return measure(setting, replicate, effort)  # pyright: ignore[reportArgumentType]
+    if isinstance(setting, Learning):
+        return learning_curve(setting, replicate, effort)
+    return estimation_curve(setting, replicate, effort)
 
 
 ESTIMATION = Experiment(

@@ -4,7 +4,7 @@ Section 5.1.1, conclusion 1.
 """
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple, cast
+from typing import NamedTuple
 
 from handeye.calibration.calibrators import NetworkCorrection
 from handeye.calibration.models import PlanarModel
@@ -57,8 +57,7 @@ class Layered:
             rate=self.rate,
             rng=stream("learner: first weights", replicate),
         )
-        # It has the verbs of a resource-allocating network, and a correction needs no more.
-        return NetworkCorrection(model, cast("Any", network))
+        return NetworkCorrection(model, network)
 
 
 def layered_curve(setting: Layered, replicate: int, effort: Effort) -> Quantities:

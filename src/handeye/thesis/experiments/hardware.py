@@ -55,7 +55,7 @@ class OnChip(Learning):
     def calibrator(self, replicate: int) -> NetworkCorrection[StereoObservation, StereoTarget]:
         """A fresh one."""
         calibrator = super().calibrator(replicate)
-        learner: Any = calibrator.network
+        learner = calibrator.network
         if self.on_grid:
             inputs = calibrator.model.features(grid_of_poses(self))
             empty = Learning(
@@ -90,7 +90,7 @@ def on_chip(setting: OnChip, replicate: int, effort: Effort) -> Quantities:
     curves = learning_curve(setting, replicate, effort)
     if setting.fixed is None:
         return curves
-    chip: Any = setting.calibrator(replicate).network
+    chip = setting.calibrator(replicate).network
     x, target = _one_sample(chip)
     counts = count_trial(chip, x, target).sum(axis=0)
     rule = type(setting.adaptation)

@@ -142,7 +142,7 @@ def draw(axes: Axes, drawn: Sequence[Line], panel: Panel) -> None:
     for value, words in panel.levels:
         axes.axhline(value * factor, color=color("soft"), linewidth=1.4, linestyle=(0, (1.5, 2.5)))
         labels.append(Label(value * factor, words, color("soft")))
-    _scale(axes, panel.scale, lowest * factor, highest * factor)
+    _scale(axes, panel.scale, lowest * factor, highest * factor, _top(drawn, highest) * factor)
     _scale_x(axes, drawn, panel)
     name_y(axes, f"{panel.name} [{unit}]" if unit else panel.name)
     # A shortened run does not reach all that is to be marked.
@@ -198,7 +198,13 @@ def _visible(values: Array, least: float) -> Array:
     return np.maximum(np.where(np.abs(values) < _NOTHING, 0.0, values), least or -np.inf)
 
 
-def _scale(axes: Axes, scale: str, lowest: float, highest: float) -> None:
+def _top(drawn: Sequence[Line], highest: float) -> float:
+    """The top of all bands, unless they would press the lines into the lower half."""
+    bands = max(float(np.max(one.high)) for one in drawn)
+    return min(max(bands, highest), 2.0 * max(highest, 0.0))
+
+
+def _scale(axes: Axes, scale: str, lowest: float, highest: float, top: float) -> None:
     if scale == "decades":
         axes.set_yscale("log")
         axes.set_ylim(lowest * 0.6, highest * 1.6)
@@ -208,7 +214,7 @@ def _scale(axes: Axes, scale: str, lowest: float, highest: float) -> None:
     elif scale == "log" or (scale == "auto" and lowest > 0.0 and highest > 10.0 * lowest):
         scale_error_axis(axes, lowest, max(highest, 10.01 * lowest))
     else:
-        axes.set_ylim(min(lowest * 1.12, 0.0), highest * 1.12 or 1.0)
+        axes.set_ylim(min(lowest * 1.12, 0.0), max(highest * 1.12, top) or 1.0)
         axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
         axes.yaxis.set_major_formatter(FuncFormatter(_plain))
 
@@ -229,7 +235,7 @@ def _scale_x(axes: Axes, drawn: Sequence[Line], panel: Panel) -> None:
 
 
 def _plain(value: float, _position: int | None = None) -> str:
-    return f"{value:,.6g}"
+    return f"{value:,.6g}".replace("-", "\N{MINUS SIGN}")
 
 
 def _as_length(value: float, _position: int | None = None) -> str:

@@ -98,6 +98,38 @@ def another_pursuit_helps(records: Records, limits: Limits) -> Finding:
     )
 
 
+def mentor_helps(records: Records, limits: Limits) -> Finding:
+    """After the mentor's throws the arm stops nearer, catches no less, and comes when it should.
+
+    In fresh throws: the rms error is clearly lower than before, by the whole 95 % interval of its
+    differences over replicates; the mean share caught is no lower; and the arm arrives `early`
+    before the ball, give or take `room`, on average.
+    """
+    before, after = (
+        {name: records.values(f"{LEARNED}/{way}_{name}") for name in ("rms", "caught", "early")}
+        for way in ("pursuits", "mentored")
+    )
+    nearer, as_many = after["rms"] < before["rms"], after["caught"] >= before["caught"]
+    early = after["early"]
+    in_time = np.abs(early - limits["early"]) <= limits["room"]
+    on_average = abs(float(early.mean()) - limits["early"]) <= limits["room"]
+    told = "; ".join(
+        f"{words} " + " and ".join(show(way[name].mean(), unit, scale) for way in (before, after))
+        for words, name, unit, scale in (
+            ("rms error", "rms", "m", _CENTIMETRES),
+            ("caught", "caught", "fraction", None),
+            ("arrival before the ball by", "early", "s", None),
+        )
+    )
+    return Finding(
+        tuple((nearer & as_many & in_time).tolist()),
+        clearly_below(after["rms"], before["rms"])
+        and bool(after["caught"].mean() >= before["caught"].mean())
+        and on_average,
+        f"In fresh throws before the mentor's and after them, {told}.",
+    )
+
+
 def notices(records: Records, limits: Limits) -> Finding:
     """Bounce, collision and changed arm are each noticed within `ticks` in `share` of the cases."""
     within = {
@@ -160,6 +192,7 @@ def _course(curve: tuple[Array, Array], limits: Limits, unit: str) -> str:
 CATCHING: dict[str, Shape] = {
     "ball-nets": neurons,
     "crossing-prediction": predicts_the_crossing,
+    "mentor": mentor_helps,
     "repeated-pursuit": another_pursuit_helps,
     "surprise": notices,
     "before-learning": does_not_move,
