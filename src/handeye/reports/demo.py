@@ -29,9 +29,10 @@ class DemoRun:
     corrected (M,)        mean error over the test points with learning [m]
     corrected_std (M,)    sample standard deviation of the same [m]
     uncorrected (M,)      mean error with nominal kinematics [m]
-    neurons (M,)          size of the network
+    network (M,)          mean error of a network alone that saw the same reaches [m]
     bend_trial, bend      when the arm was bent, and by how much [rad]; `trials` holds bend_trial
                           twice, measured just before and just after
+    noticed               what the robot made of the bend, in words; empty for nothing
     noise_floor           mean error that sensor noise alone would leave [m]
     before, learned, bent, relearned
                           the test points and the hand's errors there at the four moments
@@ -41,9 +42,10 @@ class DemoRun:
     corrected: Array
     corrected_std: Array
     uncorrected: Array
-    neurons: Array | Integers
+    network: Array
     bend_trial: int
     bend: float
+    noticed: str
     noise_floor: float
     before: Stage
     learned: Stage
@@ -55,7 +57,7 @@ class DemoRun:
         m = len(shaped(self.trials, (None,), "trials"))
         if m == 0:
             raise InvalidInput("trials is empty: the demonstration measured nothing")
-        for name in ("corrected", "corrected_std", "uncorrected", "neurons"):
+        for name in ("corrected", "corrected_std", "uncorrected", "network"):
             shaped(getattr(self, name), (m,), name)
         if np.count_nonzero(np.asarray(self.trials) == self.bend_trial) != 2:
             raise InvalidInput(
@@ -87,7 +89,7 @@ def demo_page(run: DemoRun, *, settings: Mapping[str, str], date: str = "") -> P
         headline=_headline(run),
         subtitle="A planar arm reaches for what its stereo eye sees. Its model of itself is "
         "slightly wrong, and its eye is noisy. Every reach shows where the hand really went; "
-        "a growing network learns from that, one reach at a time.",
+        "from that it learns what is wrong with itself, one reach at a time.",
         sections=[
             Section("", [_tiles(run)]),
             Section("Four moments", [_story(run)]),
@@ -137,6 +139,7 @@ def _drawn(
     low, high = run.corrected - run.corrected_std, run.corrected + run.corrected_std
     curves = [
         Curve("with learning", run.trials, run.corrected, low, high, color="after"),
+        Curve("network alone", run.trials, run.network, color="third"),
         Curve("without learning", run.trials, run.uncorrected, color="before"),
     ]
     marks = [(float(run.bend_trial), f"the arm is bent by {_angle(run)}")]
@@ -166,7 +169,6 @@ def _tiles(run: DemoRun) -> StatTiles:
                 f"noise alone: {length(run.noise_floor, beside=max(run.means))}",
                 last < bent,
             ),
-            Tile("Neurons", f"{int(run.neurons[-1]):,}", note="grown as needed"),
         ]
     )
 
@@ -195,12 +197,12 @@ def _curve(run: DemoRun) -> FigureBlock:
             x_label="Reaches learned from",
             marks=marks,
             references=references,
-            neurons=(run.trials, run.neurons),
         ),
         "Mean error over fresh test points; the band is one standard deviation of single reaches "
-        "to either side. Nobody tells the robot that it was bent: the surprise is the signal.",
-        "Mean position error and number of neurons over the number of reaches, with and without "
-        "learning.",
+        "to either side. Nobody tells the robot that it was bent: the surprise is the signal"
+        f"{f', and it says: {run.noticed}' if run.noticed else ''}.",
+        "Mean position error over the number of reaches, with learning, by a network alone, and "
+        "without learning.",
     )
 
 
@@ -209,15 +211,17 @@ def _explanation(run: DemoRun) -> Prose:
     learned, bent = np.flatnonzero(np.asarray(run.trials) == run.bend_trial)
     luck = (
         "\n\nThis bend happens to cancel part of the arm's old errors, so without learning the "
-        "hand now lands closer. With learning it first lands further off, because what the network "
-        "had learned fitted the old arm."
+        "hand now lands closer. With learning it first lands further off, because what was learned "
+        "fitted the old arm."
         if run.uncorrected[bent] < run.uncorrected[learned]
         else ""
     )
     return Prose(
-        "Without learning, the arm goes where its data sheet says. With learning, a "
-        "resource-allocating network adds a correction to the joint angles. It takes a new neuron "
-        "where a surprise is large and no neuron is near, and otherwise shifts the ones it has."
+        "Without learning, the arm goes where its data sheet says. With learning, the lengths, "
+        "offsets and error curves of the whole chain from shoulder to eye are estimated together, "
+        "and a run of surprises is traced to the part that explains it. The network alone, the "
+        "thesis's learner, knows nothing of that chain and has to learn each corner of the "
+        "workspace by itself: it needs thousands of reaches."
         f"{luck}\n\nThe dotted line is the limit: even with perfect kinematics, the noise of the "
         f"eye alone would leave {floor}."
     )

@@ -21,6 +21,7 @@ from handeye.calibration.combined import (
     combined_to_arrays,
     floor,
 )
+from handeye.calibration.drift import OffsetStep
 from handeye.calibration.session import WorldStreams
 from handeye.calibration.world import PlanarWorld
 from handeye.thesis.plants import NORMAL
@@ -66,6 +67,16 @@ def test_a_change_is_attributed_to_its_part_and_learned_at_once(part):
     least = floor(PlanarWorld(BUMPS[part]), 0, WorldStreams.of(0), 200).mean()
     assert mean_error(combined, BUMPS[part]) < 1.1 * least
     assert part in combined.health()
+
+
+@pytest.mark.parametrize("replicate", [0, 16, 17, 24, 30])
+def test_a_slip_seen_near_the_eye_is_not_taken_for_a_remounted_camera(replicate):
+    """There sightings depend on the slip so strongly that derivatives before it are misleading."""
+    combined = Combined(MODEL)
+    combined.observe_many(stream(510, replicate, drift=OffsetStep("alpha", 0.035, at=500)))
+    (change,) = changes(combined)
+    assert change.part == "encoder offset of alpha"
+    assert abs(change.amount - 0.035) < 4.0 * change.std
 
 
 def test_the_amount_of_a_change_is_right_within_its_deviation():

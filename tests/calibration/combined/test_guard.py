@@ -10,9 +10,6 @@ from tests.calibration.combined.robots import MODEL, joined, mean_error, stream,
 
 from handeye.calibration.combined import Combined, Settings
 from handeye.calibration.combined.guard import Comparison
-from handeye.calibration.combined.leftover import Leftover
-from handeye.networks.inputs import InputSpace
-from handeye.observations import StereoObservation
 from handeye.thesis.plants import NOMINAL
 
 FOOLING = st.sampled_from(["mirrored", "frozen", "scaled", "random", "shifted", "turned"])
@@ -116,31 +113,3 @@ def test_a_comparison_tells_who_is_worse(a, b):
     assert other.significance == comparison.significance
     with pytest.raises(ValueError, match="length"):
         Comparison(30, 3.0).restore(comparison.arrays())
-
-
-def test_a_network_must_prove_itself_and_loses_its_place_when_it_hurts():
-    rng = np.random.default_rng(2)
-    leftover = Leftover(InputSpace.box([0.0], [1.0]), 1, 50, 3.0)
-    x = rng.random((200, 1))
-    for one in x:
-        leftover.learn(one, np.sin(6.0 * one))
-        assert not leftover.used(one[np.newaxis]).any()
-        leftover.judge(1.0, 0.5)
-        if leftover.proved:
-            break
-    assert leftover.proved
-    assert leftover.comparison.n == 100
-    np.testing.assert_allclose(leftover.used(x[:5]), np.sin(6.0 * x[:5]), atol=0.35)
-    assert not leftover.used(np.array([[5.0]])).any()
-    for _ in range(60):
-        leftover.judge(0.5, 1.0)
-    assert not leftover.proved
-    assert not leftover.used(x[:5]).any()
-
-
-def test_without_noise_worth_learning_a_network_is_never_used():
-    assert not taught(400).leftover.proved
-    none = Leftover(InputSpace.box([0.0], [1.0]), 1, 0, 3.0)
-    assert none.learn(np.zeros(1), np.ones(1)) == (np.zeros(1), False)
-    assert not none.correction(np.zeros((2, 1))).any()
-    assert isinstance(stream(2), StereoObservation)

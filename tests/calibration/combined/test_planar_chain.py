@@ -90,6 +90,35 @@ def test_reach_turns_residuals_into_metres(seed):
         np.testing.assert_allclose(-metres @ change, expected, rtol=0.02, atol=2e-8)
 
 
+def test_reach_allows_for_the_range_scale():
+    x, metres = np.zeros(N), np.empty((2, 2))
+    x[7] = 0.25
+    (seen,) = sightings(x, np.random.default_rng(1))
+    planar_reach(CHAIN.kernel, x, seen, DOUBT, metres)
+    d = seen[3] / 1.25
+    range_std = -d / residuals(x, seen)[1][0, 7]
+    assert np.hypot(*metres[:, 0]) == pytest.approx(range_std / 1.25, rel=1e-12)
+
+
+def test_a_turn_more_of_the_eye_changes_no_residual():
+    for seen in sightings(np.zeros(N), np.random.default_rng(2), 20):
+        turned = seen + np.array([0.0, 0.0, 2.0 * np.pi, 0.0, 0.0])
+        np.testing.assert_allclose(
+            residuals(np.zeros(N), turned)[0], residuals(np.zeros(N), seen)[0], atol=1e-8
+        )
+
+
+def test_a_hand_at_the_eye_has_finite_residuals_and_slopes():
+    nominal = CHAIN.kernel.nominal.copy()
+    nominal[2:7] = (nominal[0] + nominal[1], 0.0, 0.0, 0.0, 0.0)
+    values, slopes = np.empty(2), np.empty((2, N))
+    stretched = np.array([0.0, 0.0, 0.1, 0.2, 0.0])
+    kernel = CHAIN.kernel._replace(nominal=nominal)
+    planar_residuals(kernel, np.zeros(N), stretched, DOUBT, values, slopes)
+    assert np.isfinite(values).all()
+    assert np.isfinite(slopes).all()
+
+
 def test_with_nothing_learned_it_is_the_nominal_robot():
     seen = stream(50)
     joints = np.empty((50, 2))

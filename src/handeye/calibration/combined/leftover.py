@@ -4,40 +4,40 @@ import numpy as np
 
 from handeye.arrays import Array
 from handeye.calibration.combined.guard import Comparison
-from handeye.networks import ResourceAllocatingNetwork
 from handeye.networks.inputs import InputSpace
+from handeye.networks.recursive import RecursiveNetwork
 
-# Corrections smaller than this are not worth a neuron [rad].
-_WORTH = 1e-5
-# A correction counts up to this distance from all experience, in the network's scaled inputs.
-_NEAR = 0.3
 # Comparisons of the network with its absence.
 _RECENT = 100
+# What is left is about as large as the noise, or the model would have been found wanting before.
+_NOISE_RATIO = 1.0
 
 
 class Leftover:
-    """Corrections of two joint angles, learned from what is left after the model.
+    """Shifts of the hand, learned from what is left after the model.
 
-    Every observation is tested before it is learned. The network is used only while it has been
-    better than its absence, beyond chance, over the latest hundred, and only near inputs that it
-    has seen; so it cannot make things worse for longer than that takes to notice.
+    A recursive network: it averages noise as the model does, and away from what it has seen it says
+    nothing, its prior. Every observation is tested before it is learned, and the network is used
+    only while it has been better than its absence, beyond chance, over the latest hundred; so it
+    cannot make things worse for longer than that takes to notice.
 
     Args:
-        space: of the inputs.
-        n_outputs: corrections.
+        space: of the inputs; one scale is how far an observation tells about its neighbours.
+        n_outputs: components of a shift.
         capacity: most neurons; 0 for no network.
         chance: mean over standard error that proves it.
     """
 
     def __init__(self, space: InputSpace, n_outputs: int, capacity: int, chance: float) -> None:
         self.network = (
-            ResourceAllocatingNetwork(
+            RecursiveNetwork(
                 space.n_inputs,
                 n_outputs,
                 inputs=space,
                 capacity=capacity,
-                error_threshold=_WORTH,
-                learning_threshold=_WORTH,
+                block=capacity,
+                noise_ratio=_NOISE_RATIO,
+                relevance_samples=None,
             )
             if capacity
             else None
@@ -46,31 +46,22 @@ class Leftover:
         self.comparison = Comparison(_RECENT, chance)
         self.proved = False
 
-    def correction(self, inputs: Array) -> Array:
-        """What the network says (N, m) at inputs (N, d) near its experience, used or not."""
-        if self.network is None or self.network.n_neurons == 0:
-            return np.zeros((len(inputs), self.n_outputs))
-        near = self.network.nearest_many(inputs) < _NEAR
-        return self.network.predict_many(inputs) * near[:, np.newaxis]
-
     def used(self, inputs: Array) -> Array:
-        """What is added to commands (N, m): nothing unless the network has proved itself."""
-        if not self.proved:
+        """Shifts (N, m) [m] to count with at inputs (N, d): none unless it has proved itself."""
+        if self.network is None or not self.proved:
             return np.zeros((len(inputs), self.n_outputs))
-        return self.correction(inputs)
+        return self.network.predict_many(inputs)
 
-    def learn(self, inputs: Array, wanted: Array) -> tuple[Array, bool]:
-        """Learn from one observation: inputs (d,), correction wanted (m,).
-
-        Returns what it had said before (m,), and whether a neuron was added.
-        """
+    def learn(self, inputs: Array, left: Array) -> bool:
+        """Learn the miss (m,) that the model left at inputs (d,); tells of a new neuron."""
         if self.network is None:
-            return np.zeros(self.n_outputs), False
-        error, allocated = self.network.learn(inputs, wanted)
-        return wanted - error, allocated
+            return False
+        error, allocated = self.network.learn(inputs, left)
+        self._judge(float(np.linalg.norm(left)), float(np.linalg.norm(error)))
+        return bool(allocated)
 
-    def judge(self, without: float, given: float) -> None:
-        """Errors that would have been made without it and with it, before it learned."""
+    def _judge(self, without: float, given: float) -> None:
+        """Misses without it and with it, before it learned."""
         self.comparison.add(without, given)
         # Proof takes a full count; to lose it takes only doubt.
         if self.proved:

@@ -24,6 +24,9 @@ _FEWEST = 3
 _SURE = 5.0
 
 
+NOWHERE = np.zeros(0)
+
+
 class Found(NamedTuple):
     """A change: its place among the chain's, the observations since it, and which fit it.
 
@@ -49,16 +52,25 @@ class Surprises:
     def __init__(self, chain: Chain, rules: Rules, bank: Bank, h: int, gate: float) -> None:
         self.chain, self.rules, self.bank, self.h, self.gate = chain, rules, bank, h, gate
 
-    def linearised(self, slots: Integers) -> tuple[Array, Array]:
-        """Residuals (m, k) and their derivatives (m, k, n) by the unknowns, in tolerances."""
+    def linearised(
+        self, slots: Integers, places: tuple[int, ...] = (), jump: Array = NOWHERE
+    ) -> tuple[Array, Array]:
+        """Residuals (m, k) and their derivatives (m, k, n) by the unknowns, in tolerances.
+
+        If the unknowns at places jumped by jump (p,) the derivatives are those after it, and
+        residuals what they would be before it by these.
+        """
         k, n = self.chain.n_values, len(self.chain.names)
+        at = list(places)
+        d = self.bank.d[self.h].copy()
+        d[at] += jump
         values, lines = np.empty((len(slots), k)), np.empty((len(slots), k, n + 1))
         for i, slot in enumerate(slots):
             linearise(
-                self.chain.kernel, self.rules, self.h, self.bank.d[self.h], self.bank.seen[slot],
+                self.chain.kernel, self.rules, self.h, d, self.bank.seen[slot],
                 float(self.bank.doubts[slot]), values[i], lines[i],
             )  # fmt: skip
-        return values, lines[:, :, :n]
+        return values - lines[:, :, at] @ jump, lines[:, :, :n]
 
     def spread(self, slopes: Array) -> Array:
         """S (m k, m k) if nothing changed."""
@@ -98,11 +110,17 @@ def best_change(surprises: Surprises, recent: Integers, odds: float) -> Found | 
         if len(since) < 2 or np.mean(rejected[since]) < _SURPRISING:
             continue
         for change in range(len(surprises.chain.changes)):
-            kept, gain, jump, std = _explain(surprises, change, since, (values, slopes, S), wide)
+            *_, jump, _ = _explain(surprises, change, since, (values, slopes, S), wide)
+            # A jump can be too large for derivatives before it: near the eye a slip of an encoder
+            # looked less like itself than like a camera remounted.
+            places = surprises.chain.changes[change].places
+            after, bent = surprises.linearised(recent, places, jump)
+            parts = (after, bent, surprises.spread(bent))
+            kept, gain, jump, std = _explain(surprises, change, since, parts, wide)
             log_odds = gain - float(otherwise[since].sum())
             if kept.sum() < _FEWEST:
                 continue
-            told = k * int(kept.sum()) - min(len(surprises.chain.changes[change].places), _MOST)
+            told = k * int(kept.sum()) - min(len(places), _MOST)
             sure = np.max(np.abs(jump) / np.maximum(std, 1e-9)) > _SURE
             if told >= _LEAST and sure and (best is None or log_odds > best.log_odds):
                 best = Found(change, recent[since], kept, log_odds, jump, std)

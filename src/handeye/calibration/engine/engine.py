@@ -33,10 +33,18 @@ _SURE_OF_IT = 0.9
 class Engine:
     """Follows the unknowns of a chain.
 
+    Every hypothesis of the settings has its own square-root information filter (Bierman 1977) over
+    a window of observations that are linearised anew (`filter`); `x` is their average, weighted by
+    what each has predicted (`stepping.beliefs`). An observation that none of them believes is an
+    outlier, the first sign of a change of one part (`attribution`, generalised likelihood ratios),
+    or shows a mistake of the past, whereupon the window is settled anew (`robust`). What happened
+    stands in `events`.
+
     Args:
         chain: the robot.
         settings: how to learn.
-        doubt: what the model leaves unexplained, at first and at least.
+        doubt: what the model leaves unexplained, at first and at least, a standard deviation in the
+            units of the chain's residuals [m] and [rad].
     """
 
     def __init__(self, chain: Chain, settings: Settings, doubt: tuple[float, float]) -> None:

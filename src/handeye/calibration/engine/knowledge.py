@@ -1,5 +1,6 @@
 """How well the unknowns are known, what the observations do not tell, and how the robot is."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -97,13 +98,21 @@ def _undetermined(chain: Chain, covariance: Array) -> tuple[str, ...]:
         q = np.linalg.qr(basis.T).Q
         away = np.eye(len(plain)) - q @ q.T
         block = away @ block @ away
-    sizes, directions = np.linalg.eigh(block)
+    return (*words, *open_directions([chain.names[k] for k in plain], block))
+
+
+def open_directions(names: Sequence[str], scaled: Array) -> tuple[str, ...]:
+    """Directions in which priors have hardly narrowed, the most open first, in words.
+
+    scaled (n, n): covariance of the unknowns of these names, in their tolerances.
+    """
+    words: list[str] = []
+    sizes, directions = np.linalg.eigh(scaled)
     for size, direction in zip(sizes[::-1], directions.T[::-1], strict=True):
         if np.sqrt(size) < _DETERMINED:
             break
-        order = plain[np.argsort(-np.abs(direction))]
-        mentioned = [chain.names[int(k)] for k in order if abs(direction[plain == k][0]) > 0.3]
-        words.append(" with ".join(mentioned))
+        order: list[int] = np.argsort(-np.abs(direction)).tolist()
+        words.append(" with ".join(names[k] for k in order if abs(direction[k]) > 0.3))
     return tuple(words)
 
 

@@ -12,8 +12,8 @@ from handeye.networks.inputs import InputSpace
 class Acting(NamedTuple):
     """How commands are made.
 
-    x (n,) unknowns; correct: network inputs (N, d) to what it adds (N, o), if it is used; envelope:
-    the hand goes at most so far from where the nominal robot would bring it [m].
+    x (n,) unknowns; correct: network inputs (N, d) to the misses (N, m) that are left [m], if it is
+    used; envelope: the hand goes at most so far from where the nominal robot would bring it [m].
     """
 
     x: Array
@@ -57,7 +57,7 @@ class Robot(Protocol):
 
     @property
     def n_outputs(self) -> int:
-        """What that network adds, o components."""
+        """Components m of a miss, which is what that network predicts."""
         ...
 
     def seen_rows(self, observations: Any) -> Array:
@@ -76,12 +76,12 @@ class Robot(Protocol):
         """What two commanders would have made of an observation."""
         ...
 
-    def lesson(self, row: Array, judged: Judged) -> tuple[Array, Array]:
-        """Inputs (d,) of the network, and what it should have added (o,)."""
+    def inputs(self, row: Array, judged: Judged) -> Array:
+        """Of the network (d,), when it is to say what is left of an observation."""
         ...
 
-    def helped(self, row: Array, judged: Judged, extra: Array) -> Array:
-        """The miss (m,) had the network added `extra` (o,)."""
+    def explained(self, row: Array, shift: Array) -> Array:
+        """The observation (w,) had the hand not been shifted (m,) by what the network explains."""
         ...
 
     def errors(self, acting: Acting, rows: Array) -> Array:

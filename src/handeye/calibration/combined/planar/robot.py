@@ -61,15 +61,15 @@ class PlanarRobot:
         judge(self.chain.kernel, x, row, envelope, joints, misses)
         return Judged(misses, joints)
 
-    def lesson(self, row: Array, judged: Judged) -> tuple[Array, Array]:
-        """Learned command and sighting (5,); the change of both joints that was wanting."""
-        return np.concatenate([judged.joints[1], row[2:]]), wrap(row[:2] - judged.joints[1])
+    def inputs(self, row: Array, judged: Judged) -> Array:
+        """Learned command and sighting (5,)."""
+        return np.concatenate([judged.joints[1], row[2:]])
 
-    def helped(self, row: Array, judged: Judged, extra: Array) -> Array:
-        """The miss of the learned command with `extra`."""
-        out = np.empty(2)
-        missed(self.chain.kernel, row, judged.joints[1] + extra, out)
-        return out
+    def explained(self, row: Array, shift: Array) -> Array:
+        """The row with the joints that would have brought the hand there without the shift."""
+        explained = row.copy()
+        explained[:2] += self._turned(row[:2], -shift)
+        return explained
 
     def errors(self, acting: Acting, rows: Array) -> Array:
         """Misses (N, 2) of the commands for sightings of the hand."""
@@ -85,8 +85,8 @@ class PlanarRobot:
         joints = self._acted(acting, np.zeros((len(rows), 2)), rows)
         if acting.correct is None:
             return joints
-        inputs = np.concatenate([joints, rows[:, 2:]], axis=1)
-        return self._acted(acting, acting.correct(inputs), rows)
+        shifts = acting.correct(np.concatenate([joints, rows[:, 2:]], axis=1))
+        return self._acted(acting, self._turned(joints, shifts), rows)
 
     def candidates(self, x: Array, region: Any, n: int) -> tuple[Array, Array]:
         """Poses of a `Region`, by default all of the robot's."""
@@ -98,6 +98,12 @@ class PlanarRobot:
     def corrected(self, x: Array) -> PlanarPlant:
         """The nominal plant with the estimated parameters."""
         return plant_with(self.model.nominal, (self.chain.nominal + x)[:PARAMETERS])
+
+    def _turned(self, joints: Array, shifts: Array) -> Array:
+        """Changes of joints (..., 2) that shift the nominal hand (..., 2) [m], within reach."""
+        arm = self.model.nominal.arm
+        moved = arm.inverse(arm.tips(joints) + shifts, np.where(joints[..., 1] < 0.0, -1.0, 1.0))
+        return wrap(moved - joints)
 
     def _acted(self, acting: Acting, extra: Array, rows: Array) -> Array:
         joints, held = np.empty((len(rows), 2)), np.zeros(len(rows), np.bool_)
