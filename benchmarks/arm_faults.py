@@ -26,7 +26,7 @@ from rich.table import Table
 
 from handeye.arrays import Array, Booleans
 from handeye.calibration.combined import Combined, Event
-from handeye.calibration.log_run import calibrator_for, place
+from handeye.calibration.placed import calibrator_for, place
 from handeye.errors import LogError
 from handeye.geometry import matrix_from_wxyz
 from handeye.io.convert import convert

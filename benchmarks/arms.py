@@ -25,7 +25,7 @@ from rich.table import Table
 from handeye.arrays import Array
 from handeye.calibration.calibrators import NetworkCorrection, Nominal
 from handeye.calibration.combined import ArmSheet, Combined, CurveTerms
-from handeye.calibration.log_run import place
+from handeye.calibration.placed import place
 from handeye.errors import LogError
 from handeye.io.convert import convert
 from handeye.io.logs import read_log

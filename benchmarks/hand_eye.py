@@ -48,6 +48,7 @@ class Arm:
         self.robot = get_robot(name)
         self.joint_names = tuple(f"q{i + 1}" for i in range(self.robot.dof))
         self.lower, self.upper = np.array(self.robot.q_min), np.array(self.robot.q_max)
+        self.held = np.zeros(self.robot.dof, np.bool_)
 
     def poses(self, joints: np.ndarray) -> np.ndarray:
         """As `handeye.robots.arm.Arm`."""

@@ -16,7 +16,7 @@ import handeye
 from handeye.calibration import PlanarModel, PlanarWorld, WorldStreams
 from handeye.calibration.arm_world import ArmWorld
 from handeye.calibration.combined import Combined
-from handeye.calibration.log_run import place
+from handeye.calibration.placed import place
 from handeye.robots.urdf import load_arm
 from handeye.thesis.plants import NOMINAL, NORMAL
 

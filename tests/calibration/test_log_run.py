@@ -9,7 +9,8 @@ from tests.calibration.cases import CASES, sightings
 
 from handeye.calibration.calibrators import NetworkCorrection, Nominal
 from handeye.calibration.combined import Combined
-from handeye.calibration.log_run import Method, calibrate_log, robot_name, working_range
+from handeye.calibration.log_run import calibrate_log
+from handeye.calibration.placed import Method, robot_name, working_range
 from handeye.calibration.planar_placement import eye_points
 from handeye.calibration.results import ErrorSummary
 from handeye.calibration.session import learn_from_log

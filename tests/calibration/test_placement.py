@@ -28,6 +28,7 @@ class Planar:
     lower = np.full(2, -np.pi)
     upper = np.full(2, np.pi)
     reach = 0.55
+    held = np.zeros(2, np.bool_)
 
     def poses(self, joints):
         alpha, both = joints[:, 0], joints.sum(axis=1)

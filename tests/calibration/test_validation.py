@@ -13,7 +13,8 @@ from tests.calibration.cases import CASES, sightings
 
 from handeye.calibration.calibrators import NetworkCorrection, Nominal
 from handeye.calibration.drift import OffsetStep
-from handeye.calibration.log_run import Method, calibrate_log
+from handeye.calibration.log_run import calibrate_log
+from handeye.calibration.placed import Method
 from handeye.calibration.results import ErrorSummary
 from handeye.calibration.validation import BLOCKS, left_out, to_learn, turn_errors
 from handeye.errors import InvalidInput

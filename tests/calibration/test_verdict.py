@@ -11,7 +11,8 @@ from tests.calibration.cases import CASES, sightings
 from handeye.calibration.calibrators import Nominal
 from handeye.calibration.drift import Thermal
 from handeye.calibration.influence import influence
-from handeye.calibration.log_run import Method, calibrate_log
+from handeye.calibration.log_run import calibrate_log
+from handeye.calibration.placed import Method
 from handeye.calibration.results import CalibrationResult, HeldOut
 from handeye.calibration.verdict import verdict
 from handeye.io.records import Log

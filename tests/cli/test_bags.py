@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from tests.cli.test_commands import done, refused
+from tests.cli.running import done, refused
 from tests.io.bags.recordings import Motion
 
 from handeye.io.logs import read_log

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from tests.cli.test_commands import done, refused, run
+from tests.cli.running import done, refused, run
 
 from handeye.catching.course import Course
 from handeye.catching.course_file import load_course
@@ -72,6 +72,7 @@ def test_the_json_has_every_number(tmp_path: Path):
     data = json.loads(target.read_text())
     assert data["settings"]["settings"] == "thesis"
     assert data["settings"]["pursuits with each arm"] == "12"
+    assert data["settings"]["throws with the mentor"] == "2"
     (score,) = data["scores"]
     assert (score["ball"], score["arm"], score["n"]) == ("heavy", "light", 2)
     assert 0.0 <= score["low"] <= score["share"] <= score["high"] <= 1.0
@@ -100,6 +101,7 @@ def test_another_replicate_gives_another_learner(tmp_path: Path):
         data_of("catch", *ONE_PAIR, "--replicate", i, "--out", tmp_path) for i in (0, 1)
     )
     assert first["neurons"] != second["neurons"]
+    assert first["settings"]["throws with the mentor"] == "0"  # --mentored 2, but no advice taken
 
 
 @pytest.mark.usefixtures("no_drawing")

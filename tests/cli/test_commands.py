@@ -8,34 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner, Result
+from tests.cli.running import done, refused
 
 from handeye.calibration import load_model
-from handeye.cli import app
 from handeye.io.logs import read_log
 from handeye.io.targets import read_stereo_targets
 from handeye.observations import StereoObservation
 
 Rows = list[list[str]]
-
-
-def run(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(a) for a in arguments], env={"COLUMNS": "200"})
-
-
-def done(*arguments: object) -> Result:
-    result = run(*arguments)
-    assert result.exit_code == 0, result.output
-    return result
-
-
-def refused(*arguments: object) -> str:
-    """The message of a command that ends with exit code 2 and no traceback."""
-    result = run(*arguments)
-    assert result.exit_code == 2, result.output
-    assert result.exception is None or isinstance(result.exception, SystemExit)
-    assert "Traceback" not in result.output
-    return " ".join(result.stderr.split())
 
 
 def rows_of(path: Path) -> Rows:
@@ -209,7 +189,7 @@ def test_bad_rows_stop_the_run_or_are_listed(log: Path, tmp_path: Path):
 def test_misuse_is_explained(log: Path, tmp_path: Path):
     out = ("--out", tmp_path / "out")
     assert "no such" in refused("apply", tmp_path / "absent", log)
-    assert "not a calibrated handeye model" in refused("apply", log, log)
+    assert "not stored by handeye" in refused("apply", log, log)
     assert "cannot be read" in refused("calibrate", tmp_path / "no.csv", "--robot", "planar", *out)
     assert "ur10" in refused("calibrate", log, "--robot", "ur1o", *out)
     assert "known kinds" in refused("convert", log, tmp_path / "converted.csv")

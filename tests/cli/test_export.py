@@ -6,12 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner, Result
+from tests.cli.running import done, refused
 
 from handeye.calibration.calibrators import NetworkCorrection, Nominal
 from handeye.calibration.models import PlanarModel
 from handeye.calibration.storage import save_model
-from handeye.cli import app
 from handeye.networks import (
     FixedPoint,
     GradientDescent,
@@ -21,23 +20,6 @@ from handeye.networks import (
 )
 from handeye.networks.hardware.c_source import c_files
 from handeye.thesis.plants import NOMINAL
-
-
-def run(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(a) for a in arguments], env={"COLUMNS": "200"})
-
-
-def done(*arguments: object) -> str:
-    result = run(*arguments)
-    assert result.exit_code == 0, result.output
-    return result.stdout
-
-
-def refused(*arguments: object) -> str:
-    result = run(*arguments)
-    assert result.exit_code == 2, result.output
-    assert result.exception is None or isinstance(result.exception, SystemExit)
-    return " ".join(result.stderr.split())
 
 
 def network(**kinds) -> ResourceAllocatingNetwork:
@@ -58,7 +40,7 @@ def texts(folder: Path) -> dict[str, str]:
 
 
 def test_a_network_becomes_files_that_say_what_they_cost(stored: Path, tmp_path: Path):
-    printed = done("export", stored, "--c", tmp_path / "c")
+    printed = done("export", stored, "--c", tmp_path / "c").stdout
     expected = c_files(HardwareNetwork.of(network(), FixedPoint(16)))
     assert texts(tmp_path / "c") == dict(sorted(expected.items()))
     assert "12 neurons" in printed
@@ -79,7 +61,7 @@ def test_a_network_becomes_files_that_say_what_they_cost(stored: Path, tmp_path:
     ids=lambda value: value[0][2:] if isinstance(value, list) else "",
 )
 def test_options_choose_the_arithmetic(stored: Path, tmp_path: Path, options, fixed, learns):
-    printed = done("export", stored, "--c", tmp_path / "c", "--name", "arm", *options)
+    printed = done("export", stored, "--c", tmp_path / "c", "--name", "arm", *options).stdout
     chip = HardwareNetwork.of(network(), fixed, learns=learns)
     assert texts(tmp_path / "c") == dict(sorted(c_files(chip, "arm").items()))
     assert ("learn, at most" in printed) is learns

@@ -8,31 +8,13 @@ import numpy as np
 import pytest
 import yaml
 from scipy.spatial.transform import Rotation
-from typer.testing import CliRunner, Result
+from tests.cli.running import done, refused
 
-from handeye.cli import app
 from handeye.geometry import invert, make_pose, wxyz_from_matrix
 from handeye.io.pairs import read_pairs
 
 NAMES = ("x_m", "y_m", "z_m", "qw", "qx", "qy", "qz")
 HEADER = [prefix + name for prefix in ("flange_", "target_") for name in NAMES]
-
-
-def run(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(a) for a in arguments], env={"COLUMNS": "200"})
-
-
-def done(*arguments: object) -> Result:
-    result = run(*arguments)
-    assert result.exit_code == 0, result.output
-    return result
-
-
-def refused(*arguments: object) -> str:
-    result = run(*arguments)
-    assert result.exit_code == 2, result.output
-    assert "Traceback" not in result.output
-    return " ".join(result.stderr.split())
 
 
 def poses(rng, n, size):

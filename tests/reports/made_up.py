@@ -1,13 +1,21 @@
 """Plausible made-up runs to draw."""
 
+from dataclasses import replace
+
 import numpy as np
 
-from handeye.calibration.results import CalibrationResult, HeldOut, Influence, PartChange
+from handeye.calibration.results import (
+    CalibrationResult,
+    HeldOut,
+    Influence,
+    PartChange,
+    Workspace,
+)
 from handeye.reports.demo import DemoRun
 from handeye.reports.figures import PlanarArm, Stage
 
 
-def ur_run(n=1495, held_out=True, rejected=(), log="ur10_log.csv"):
+def ur_run(n=1495, held_out=True, rejected=(), log="ur10_log.csv", expected=True):
     """A six-joint arm whose second and third joint are off, learned down to its repeatability."""
     rng = np.random.default_rng(7)
     joints = rng.uniform(-np.pi, np.pi, (n, 6)) * (1.0, 0.4, 0.6, 0.8, 0.5, 1.0)
@@ -27,6 +35,9 @@ def ur_run(n=1495, held_out=True, rejected=(), log="ur10_log.csv"):
         rows, before[rows], after, rows * 5 // n, "blocks", 2.0 * turns, turns, np.full(5, 8e-5)
     )
     residual = np.linalg.norm(online, axis=1)
+    sizes = 2e-4 + 1e-4 * rng.uniform(size=n)
+    if expected:
+        held = replace(held, expected=sizes[rows])
     return CalibrationResult(
         robot="ur10",
         log=log,
@@ -54,8 +65,23 @@ def ur_run(n=1495, held_out=True, rejected=(), log="ur10_log.csv"):
             PartChange("placement of joint wrist_1", 3.1e-4, "shift x", 2.9e-4, 6e-5, "m", 0.62),
         ),
         undetermined=("scale of joint wrist_3",),
-        influence=Influence(residual, residual / np.median(residual), residual > 3e-3),
+        influence=Influence(
+            residual, residual / np.median(residual), residual > 3e-3, sizes if expected else None
+        ),
+        workspace=ur_workspace(positions) if expected else None,
     )
+
+
+def ur_workspace(positions, n=600):
+    """Postures near those of a log, and others that are known worse the lower they reach."""
+    rng = np.random.default_rng(2)
+    joints = rng.uniform(-np.pi, np.pi, (n, 6))
+    worked = np.arange(n) % 2 == 0
+    bearing, reach = joints[:, 0], np.sqrt(rng.uniform(0.05, 1.4, n))
+    height = np.where(worked, rng.uniform(0.1, 1.1, n), rng.uniform(-1.0, 1.2, n))
+    places = np.stack([reach * np.cos(bearing), reach * np.sin(bearing), height], axis=1)
+    sizes = 2e-4 * (1.0 + reach) + np.where(worked, 0.0, 4e-4 * (1.2 - height))
+    return Workspace(joints, places, sizes, worked, positions[:200])
 
 
 def planar_run(n=300):
@@ -105,9 +131,10 @@ def demo_run():
         corrected=corrected,
         corrected_std=np.full(len(trials), 0.006),
         uncorrected=uncorrected,
-        neurons=np.minimum(trials // 8, 200) + 1,
+        network=1.5 * corrected,
         bend_trial=5000,
         bend=np.radians(2.0),
+        noticed="encoder offset of alpha changed by +2.01 ± 0.05 degrees",
         noise_floor=0.009,
         before=Stage("Before learning", points, wave),
         learned=Stage("After 5,000 reaches", points, noise()),

@@ -28,7 +28,7 @@ def test_a_page_works_offline_and_fits_the_screen(pages, watched_page, name, wid
     assert watched_page.problems == []
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     drawings = page.locator("figure svg[role=img]")
-    assert drawings.count() == {"calibration": 5, "demo": 2}[name]
+    assert drawings.count() == {"calibration": 6, "demo": 2}[name]
     for drawing in drawings.all():
         assert drawing.is_visible()
         assert drawing.bounding_box()["height"] > 100

@@ -217,7 +217,7 @@ def test_the_still_is_a_small_picture_twice_as_wide_as_high():
     ("change", "complaint"),
     [
         ({"trials": np.zeros(0)}, "trials is empty"),
-        ({"neurons": np.zeros(3)}, "neurons must have shape"),
+        ({"network": np.zeros(3)}, "network must have shape"),
         ({"corrected": np.full(52, np.nan)}, "corrected must be finite"),
         ({"bend_trial": 1}, "trial of the bend"),
     ],

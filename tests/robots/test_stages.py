@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.robots.test_urdf import FOUR, joint, robot
+from tests.robots.made import FOUR, joint, robot
 
 from handeye.errors import InvalidInput
 from handeye.robots.stages import Stages

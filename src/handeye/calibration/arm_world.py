@@ -40,15 +40,16 @@ class ArmWorld:
     @classmethod
     def of(cls, arm: UrdfArm, *, noise: float = 1e-4, replicate: int = 0) -> Self:
         """An arm with random errors of ordinary size: 0.4 mm, 0.03 degrees, zeros 0.2 degrees."""
-        n, rng = len(arm.joint_names), stream("arm world", replicate)
+        n, rng = len(arm.stage_names), stream("arm world", replicate)
         turns = rng.normal(size=(n, 3)) * _TURN
         turns += rng.normal(size=(n, 1)) * _ZERO * arm.stages().axes
         D = make_pose(Rotation.from_rotvec(turns).as_matrix(), rng.normal(size=(n, 3)) * _SHIFT)
-        actual = UrdfArm.from_text(corrected_urdf(arm.urdf, arm.joint_names, D), arm.tip, arm.name)
+        urdf = corrected_urdf(arm.urdf, arm.stage_names, D)
+        actual = UrdfArm.from_text(urdf, arm.tip, arm.name, arm.eye)
         far = 1.5 * arm.reach
         base = make_pose(Rotation.random(rng=rng).as_matrix(), [0.2 * far, -0.1 * far, far])
         marker = make_pose(Rotation.random(rng=rng).as_matrix(), [0.03, 0.02, 0.08])
-        waves = rng.normal(size=(n, 2)) * _WAVE
+        waves = rng.normal(size=(len(arm.joint_names), 2)) * _WAVE
         return cls(arm, actual, waves, Placement(base, marker), scalar(noise, "noise", least=0.0))
 
     def positions(self, joints: Array) -> Array:

@@ -8,7 +8,7 @@ from handeye.arrays import Array
 from handeye.calibration.calibrator import Feedback
 from handeye.calibration.models import AnyModel, Correct, HandEyeModel
 from handeye.errors import InvalidInput
-from handeye.networks import ResourceAllocatingNetwork
+from handeye.networks import Learner, ResourceAllocatingNetwork
 from handeye.observations import Observation, Target
 
 Seen = TypeVar("Seen", bound=Observation)
@@ -47,26 +47,25 @@ class Nominal(Generic[Seen, Wanted]):
 
 
 class NetworkCorrection(Generic[Seen, Wanted]):
-    """Adds a correction, learned by a resource-allocating network, to the model (section 3.5).
+    """Adds a correction, learned by a network, to the model (section 3.5).
 
     Each observation gives the correction that would have been right, `needed = measured - nominal`;
     the network learns it as one sample (figure 3.5). A fresh network corrects nothing.
 
     Args:
         model: nominal kinematics and where the correction enters.
-        network: by default the preferred network of section 3.5.4 over the model's inputs, with
-            the model's resolution as its error thresholds.
+        network: any learner; by default the preferred resource-allocating network of section 3.5.4
+            over the model's inputs, with the model's resolution as its error thresholds.
 
     Raises:
         InvalidInput: a network whose inputs or outputs do not fit the model.
     """
 
-    def __init__(
-        self, model: HandEyeModel[Seen, Wanted], network: ResourceAllocatingNetwork | None = None
-    ) -> None:
+    def __init__(self, model: HandEyeModel[Seen, Wanted], network: Learner | None = None) -> None:
         space = model.space
         self.model = model
-        self.network = network or ResourceAllocatingNetwork(
+        # What else a network offers than every learner, those who chose it know.
+        self.network: Any = network or ResourceAllocatingNetwork(
             space.n_inputs,
             model.n_outputs,
             inputs=space,

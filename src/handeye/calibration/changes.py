@@ -1,31 +1,64 @@
-"""Since when a robot has been as it is."""
+"""Since when a robot has been as it is, and what it was before."""
+
+from typing import NamedTuple
 
 import numpy as np
 
+from handeye.arrays import Integers
+from handeye.calibration.arm.log_system import Jump
 from handeye.calibration.combined import Combined
 from handeye.calibration.session import AnyCalibrator
 from handeye.observations import Observation
 
 # How much farther the robot as it is now errs on rows from before a change that matters.
 _MATTERS = 2.0
+# Changes of the past that are told apart, the latest.
+_MOST = 8
 
 
-def changed_at(calibrator: AnyCalibrator, seen: Observation) -> int:
-    """The first row since the last change that was noticed and matters; 0 if there is none.
+class History(NamedTuple):
+    """What became of a robot during a log.
+
+    since  the first row since the last change that matters; 0 if there is none
+    first  the first row that tells anything of the robot as it is now
+    jumps  parts that were others before a row, from `first` on
+    """
+
+    since: int = 0
+    first: int = 0
+    jumps: tuple[Jump, ...] = ()
+
+    def of(self, rows: Integers) -> tuple[Jump, ...]:
+        """The jumps where rows (M,), rising and none before `first`, are all there is."""
+        return tuple(
+            Jump(at, jump.places)
+            for jump in self.jumps
+            if 0 < (at := int(np.searchsorted(rows, jump.at))) < len(rows)
+        )
+
+
+def history(calibrator: AnyCalibrator, seen: Observation) -> History:
+    """What a calibrator has noticed while it learned rows in the order of time.
 
     A change matters if the robot as it was learned errs more than twice as far before it as after.
     """
     events = calibrator.events if isinstance(calibrator, Combined) else ()
     since = max((e.observation for e in events if e.kind in {"change", "lost"}), default=0)
-    if not since:
-        return 0
+    if not since or not isinstance(calibrator, Combined):
+        return History()
     lengths = np.linalg.norm(calibrator.errors(seen), axis=1)
-    return since if np.mean(lengths[:since]) > _MATTERS * np.mean(lengths[since:]) else 0
+    if np.median(lengths[:since]) <= _MATTERS * np.median(lengths[since:]):
+        return History()
+    first = max((e.observation for e in events if e.kind == "lost"), default=0)
+    places = {change.words: change.places for change in calibrator.engine.chain.changes}
+    jumps = [
+        Jump(e.observation, places[e.part])
+        for e in events
+        if e.kind == "change" and e.observation > first and e.part in places
+    ]
+    return History(since, first, tuple(jumps[-_MOST:]))
 
 
 def drifts(calibrator: AnyCalibrator) -> bool:
     """Whether the robot is believed to change all the time."""
-    if not isinstance(calibrator, Combined):
-        return False
-    engine = calibrator.engine
-    return engine.settings.hypotheses[engine.leader].walk > 0.0
+    return isinstance(calibrator, Combined) and calibrator.engine.drifting

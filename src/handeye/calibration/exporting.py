@@ -1,25 +1,33 @@
-"""A calibrated arm in the files that other programs read."""
+"""A calibrated arm, and the sensors around it, in the files that other programs read."""
 
+from collections.abc import Mapping
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 
-from handeye.arrays import Array
 from handeye.calibration.arm.corrected import CorrectedArm
+from handeye.calibration.arm.measurements import PixelSightings
 from handeye.calibration.combined import Combined
 from handeye.calibration.placed_arm import PlacedArm
 from handeye.calibration.session import AnyCalibrator
+from handeye.calibration.setups.fit import MixedFit
+from handeye.calibration.setups.knowledge import looks
 from handeye.errors import InvalidInput
-from handeye.geometry import invert
 from handeye.io.urdf_origins import corrected_urdf, joint_origins
-from handeye.io.yaml_files import joint_origins_yaml
+from handeye.io.yaml_files import (
+    HandEyeFrames,
+    camera_info_yaml,
+    hand_eye_yaml,
+    joint_origins_yaml,
+)
 from handeye.robots.urdf import UrdfArm
 
 # A scale or compliance whose effect over the joint's travel is below this is none [rad].
 _NONE = 1e-6
 
 
-def calibrated_urdf(calibrator: AnyCalibrator) -> str:
+def calibrated_urdf(calibrator: AnyCalibrator | MixedFit) -> str:
     """The URDF of an arm with the joints where they were found.
 
     Placements, and with them lengths, directions and zeros of joints. Error curves, scales and
@@ -29,10 +37,11 @@ def calibrated_urdf(calibrator: AnyCalibrator) -> str:
         InvalidInput: a calibrator that has not learned an arm from a URDF file.
     """
     arm, fixed = _arm(calibrator)
-    return corrected_urdf(arm.urdf, arm.joint_names, _departures(arm, fixed))
+    departures = arm.stages().departures(fixed.stages)
+    return corrected_urdf(arm.urdf, arm.stage_names, departures)
 
 
-def calibrated_joints_yaml(calibrator: AnyCalibrator) -> str:
+def calibrated_joints_yaml(calibrator: AnyCalibrator | MixedFit) -> str:
     """The same placements as YAML that a xacro file can load.
 
     Raises:
@@ -40,15 +49,15 @@ def calibrated_joints_yaml(calibrator: AnyCalibrator) -> str:
         MissingExtra: without PyYAML.
     """
     arm, _ = _arm(calibrator)
-    names = arm.joint_names
+    names = arm.stage_names
     return joint_origins_yaml(names, joint_origins(calibrated_urdf(calibrator), names))
 
 
-def not_in_urdf(calibrator: AnyCalibrator) -> tuple[str, ...]:
+def not_in_urdf(calibrator: AnyCalibrator | MixedFit) -> tuple[str, ...]:
     """What was learned of an arm and cannot be stated in a URDF file, in words."""
     arm, fixed = _arm(calibrator)
     out: list[str] = []
-    for name, scale, give in zip(arm.joint_names, fixed.scales, fixed.compliances, strict=True):
+    for name, scale, give in zip(arm.stage_names, fixed.scales, fixed.compliances, strict=True):
         if abs(scale - 1.0) > _NONE:
             out.append(f"{name}: scale {scale:.6f}")
         if give > _NONE:
@@ -56,13 +65,65 @@ def not_in_urdf(calibrator: AnyCalibrator) -> tuple[str, ...]:
     return (*out, "error curves of the joints")
 
 
-def _departures(arm: UrdfArm, fixed: CorrectedArm) -> Array:
-    """D (n, 4, 4): how far each joint stands, in its own frame, from where the file has it."""
-    n = len(arm.joint_names)
-    return np.asarray(invert(arm.stages().placements[:n]) @ fixed.stages.placements[:n])
+def camera_infos(fit: MixedFit, sizes: Mapping[str, tuple[int, int]]) -> dict[str, str]:
+    """Intrinsics of each camera of a set-up, as ROS keeps them in camera_info files, by name.
+
+    sizes: width and height of pictures [px].
+
+    Raises:
+        InvalidInput: a camera of unknown size.
+        MissingExtra: without PyYAML.
+    """
+    out: dict[str, str] = {}
+    for one in fit.measurements:
+        if isinstance(one, PixelSightings):
+            name, numbers = one.camera.name, one.camera.reference
+            if name not in sizes:
+                raise InvalidInput(f"the size of the pictures of {name} is not known: state it")
+            fx, fy, cx, cy = numbers[:4]
+            K = np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
+            out[name] = camera_info_yaml(name, sizes[name], K, numbers[4:])
+    return out
 
 
-def _arm(calibrator: AnyCalibrator) -> tuple[UrdfArm, CorrectedArm]:
+def hand_eyes(fit: MixedFit) -> dict[str, str]:
+    """Where each camera or other sensor of a set-up is, as easy_handeye2 stores it, by name.
+
+    In the frame of the base or of the flange as they were found: publish it with the corrected
+    URDF. Frames have the names of the URDF; the sensor's own has the name of the sensor.
+
+    Raises:
+        MissingExtra: without PyYAML.
+    """
+    arm = fit.problem.arm
+    base = arm.eye or _root(arm.urdf)
+    out: dict[str, str] = {}
+    for one in fit.measurements:
+        if looks(one):
+            sensor, seen = one.sight.sensor, one.sight.target
+            target = seen.name if seen.free.any() else one.sight.points.name
+            eye = _plain(sensor.name)
+            frames = HandEyeFrames(eye, base, arm.tip, eye, _plain(target))
+            out[sensor.name] = hand_eye_yaml(one.sight.setup, sensor.reference, frames)
+    return out
+
+
+def _plain(name: str) -> str:
+    """A name without spaces, as frames have."""
+    return "_".join(name.split())
+
+
+def _root(urdf: str) -> str:
+    """The link that is no joint's child."""
+    tree = ElementTree.fromstring(urdf)
+    children = {child.get("link") for child in tree.iterfind("joint/child")}
+    names = [link.get("name", "") for link in tree.iterfind("link")]
+    return next(name for name in names if name not in children)
+
+
+def _arm(calibrator: AnyCalibrator | MixedFit) -> tuple[UrdfArm, CorrectedArm]:
+    if isinstance(calibrator, MixedFit):
+        return calibrator.problem.arm, calibrator.corrected
     model: Any = getattr(calibrator, "model", None)
     if (
         isinstance(calibrator, Combined)
@@ -71,6 +132,6 @@ def _arm(calibrator: AnyCalibrator) -> tuple[UrdfArm, CorrectedArm]:
     ):
         return model.arm, calibrator.plant
     raise InvalidInput(
-        "only an arm from a URDF file that was calibrated with the method combined has corrected "
-        "joints to write"
+        "only an arm from a URDF file that was calibrated with the method combined, or from a "
+        "description of a set-up, has corrected joints to write"
     )

@@ -4,8 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from handeye.arrays import Array
+from handeye.arrays import Array, Booleans
 from handeye.calibration.combined import Combined
+from handeye.calibration.expected import expected_at_rows
 from handeye.calibration.results import HeldOut, Influence
 from handeye.calibration.session import AnyCalibrator
 from handeye.observations import Observation, PointObservation
@@ -17,7 +18,12 @@ _OWN = 0.3
 
 
 def influence(
-    calibrator: AnyCalibrator, seen: Observation, held: HeldOut | None, *, since: int = 0
+    calibrator: AnyCalibrator,
+    seen: Observation,
+    held: HeldOut | None,
+    *,
+    since: int = 0,
+    believed: Booleans | None = None,
 ) -> Influence:
     """What each row says against the others.
 
@@ -25,6 +31,9 @@ def influence(
     size, |e_i| / (c sqrt(s^2 + s_i^2)), is 1 for the row in the middle: c is the median length of a
     vector of unit normal components, s follows from the median error, so that outliers do not
     count, and s_i is the standard deviation that the row itself states.
+
+    believed (N,): rows that a fit to all of them counts; without it, those that were believed when
+    they came.
     """
     n = len(seen)
     residual = np.full(n, np.nan)
@@ -39,11 +48,14 @@ def influence(
         lengths = np.linalg.norm(held.after, axis=1)
         residual[held.rows] = lengths
         times[held.rows] = lengths / _expected(lengths, stated[held.rows], held.after.shape[1])
-    left_out = np.zeros(n, np.bool_)
-    if isinstance(calibrator, Combined):
+    left_out = np.zeros(n, np.bool_) if believed is None else ~believed
+    if believed is None and isinstance(calibrator, Combined):
         doubted = [e.observation for e in calibrator.events if e.kind == "outlier"]
         left_out[[i for i in doubted if i < n]] = True
-    return Influence(residual, times, left_out)
+    expected = expected_at_rows(calibrator, seen)
+    if expected is not None and held is not None and held.expected is not None:
+        expected[held.rows] = held.expected
+    return Influence(residual, times, left_out, expected)
 
 
 def _stated(calibrator: AnyCalibrator, seen: Observation) -> Array:

@@ -86,7 +86,9 @@ class PlacedArm:
             InvalidInput: naming the targets that cannot be reached from their postures.
         """
         posture = shaped(targets.posture, (None, len(self.arm.joint_names)), "posture")
-        joints = np.clip(posture, self.arm.lower, self.arm.upper)
+        held = self.arm.held
+        low, high = np.where(held, -np.inf, self.arm.lower), np.where(held, np.inf, self.arm.upper)
+        joints = np.clip(posture, low, high)
         missed = np.full(len(joints), np.inf)
         for _ in range(_ITERATIONS):
             predicted = self.placement.predict(self.arm, joints) + correct(joints)
@@ -96,7 +98,7 @@ class PlacedArm:
             if not going.any():
                 return joints
             step = self._step(joints[going], error[going])
-            joints[going] = np.clip(joints[going] + step, self.arm.lower, self.arm.upper)
+            joints[going] = np.clip(joints[going] + step, low, high)
         far = np.flatnonzero(missed > _REACHED)
         if far.size:
             listed = ", ".join(f"{i + 1} (by {missed[i]:.3g} m)" for i in far[:5])
@@ -115,6 +117,7 @@ class PlacedArm:
             jacobians[:, 3:], lever[:, :, np.newaxis], axisa=1, axisb=1, axisc=1
         )
         J = self.placement.T_sensor_base[:3, :3] @ moved
+        J[:, :, self.arm.held] = 0.0
         damping = (_DAMPING * self.arm.reach) ** 2
         solved = np.linalg.solve(
             J @ J.transpose(0, 2, 1) + damping * np.eye(3), error[:, :, np.newaxis]

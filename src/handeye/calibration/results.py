@@ -62,6 +62,10 @@ class HeldOut:
     turns_after       where no orientation was measured
     moves (B,)        how far, in the mean over the rows, predictions move when part b is left out
                       of what is learned [m]
+    rigid             errors after learning others without error curves; None where there are none
+    turns_rigid       the same of orientation
+    expected (M,)     root mean square of what each `after` was expected to be, by a calibrator
+                      that knows how certain it is [m]
     """
 
     rows: Integers
@@ -72,6 +76,9 @@ class HeldOut:
     turns_before: Array | None = None
     turns_after: Array | None = None
     moves: Array | None = None
+    rigid: Array | None = None
+    turns_rigid: Array | None = None
+    expected: Array | None = None
 
     @property
     def alike(self) -> Integers:
@@ -116,15 +123,36 @@ class Influence:
                    learned [m]; nan before the robot last changed
     times (N,)     the same over the size that is to be expected, 1 being ordinary
     left_out (N,)  whether the calibrator did not believe the row when it came
+    expected (N,)  root mean square of what the residual was expected to be [m], by a calibrator
+                   that knows how certain it is: the row's surprise is the residual over this
     """
 
     residual: Array
     times: Array
     left_out: Booleans
+    expected: Array | None = None
 
     def worst(self, most: int) -> Integers:
         """Rows that fit least, at most so many, worst first."""
         return np.argsort(-np.nan_to_num(self.times, nan=-1.0), kind="stable")[:most]
+
+
+@dataclass(frozen=True, eq=False)
+class Workspace:
+    """Poses all over what an arm can reach, and how far its hand is expected to miss there.
+
+    joints (N, n)     within the limits [rad] or [m]
+    positions (N, 3)  of the marker in the base frame [m]
+    expected (N,)     root mean square miss [m]
+    worked (N,)       whether all joints are in the range in which the robot was seen
+    seen (M, 3)       where the marker was at some of the rows, in the base frame [m]
+    """
+
+    joints: Array
+    positions: Array
+    expected: Array
+    worked: Booleans
+    seen: Array
 
 
 @dataclass(frozen=True)
@@ -139,6 +167,7 @@ class CalibrationResult:
     since               the first row since the robot last changed, as far as was noticed
     drifting            whether it was changing all the time at the end
     times, rows (N,)    time stamps [s], and numbers of the rows in the file
+    workspace           how far the hand is expected to miss all over its reach, where known
     """
 
     robot: str
@@ -162,6 +191,7 @@ class CalibrationResult:
     parts: tuple[PartChange, ...] = ()
     undetermined: tuple[str, ...] = ()
     influence: Influence | None = None
+    workspace: Workspace | None = None
 
     def summary(self) -> dict[str, dict[str, Any]]:
         """The error statistics of every stage, ready for JSON."""
@@ -171,8 +201,10 @@ class CalibrationResult:
         }
         held = self.held_out
         if held is not None:
+            stages["held_out_before"] = ErrorSummary.of(held.before, held.alike)
+            if held.rigid is not None:
+                stages["held_out_rigid"] = ErrorSummary.of(held.rigid, held.alike)
             stages |= {
-                "held_out_before": ErrorSummary.of(held.before, held.alike),
                 "held_out_after": ErrorSummary.of(held.after, held.alike),
             }
         return {name: asdict(errors) for name, errors in stages.items()}

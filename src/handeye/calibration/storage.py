@@ -18,6 +18,7 @@ from handeye.calibration.plant import PlanarPlant
 from handeye.calibration.session import AfterEach, AnyCalibrator
 from handeye.errors import FileFormatError, InvalidInput
 from handeye.io.tensors import Header, read_tensors, write_tensors
+from handeye.networks.checked import CheckedLearner
 from handeye.networks.storage import from_arrays, to_arrays
 from handeye.robots.encoder import AxisEncoder
 from handeye.robots.planar import TwoLinkArm
@@ -42,7 +43,8 @@ def save_model(path: str | PathLike[str], calibrator: AnyCalibrator, observed: i
     """Write a calibrator; an old file is replaced once the new one is complete.
 
     Raises:
-        InvalidInput: a calibrator or a model of another kind, or an arm that is not from a URDF.
+        InvalidInput: a calibrator or a model of another kind, an arm that is not from a URDF, or a
+            correction by a learner that only a file of its own can hold.
     """
     if not isinstance(
         calibrator, Nominal | NetworkCorrection | ParameterEstimator | ArmEstimator | Combined
@@ -77,7 +79,7 @@ def load_model(path: str | PathLike[str]) -> StoredModel:
         model = _model_from(arrays, header)
         return StoredModel(_calibrator(model, arrays, header), int(header["observed"]))
     except (
-        FileFormatError, LookupError, OverflowError, TypeError, ValueError,
+        AttributeError, FileFormatError, LookupError, OverflowError, TypeError, ValueError,
     ) as error:  # fmt: skip
         raise FileFormatError(
             f"{path}: damaged, its parts do not fit together ({error})"
@@ -97,9 +99,8 @@ def _calibrator(model: Any, arrays: dict[str, Array], header: Header) -> AnyCali
         case "Combined":
             return combined_from_arrays(model, _part("combined.", arrays), header["combined"])
         case "NetworkCorrection":
-            return NetworkCorrection(
-                model, from_arrays(_part("network.", arrays), header["network"])
-            )
+            network = from_arrays(_part("network.", arrays), header["network"], CheckedLearner)
+            return NetworkCorrection(model, network)
         case other:
             raise FileFormatError(f"it holds an unknown calibrator, {other!r}")
 
@@ -129,7 +130,7 @@ def _model_parts(model: Any) -> Parts:
         case PlanarMap():
             header, arrays = {"nominal": asdict(model.nominal)}, {}
         case PlacedArm(arm=UrdfArm() as arm):
-            header = {"urdf": arm.urdf, "tip": arm.tip, "name": arm.name}
+            header = {"urdf": arm.urdf, "tip": arm.tip, "name": arm.name, "eye": arm.eye}
             arrays = {
                 "T_sensor_base": model.placement.T_sensor_base,
                 "T_flange_marker": model.placement.T_flange_marker,
@@ -150,7 +151,10 @@ def _model_from(arrays: dict[str, Array], header: Header) -> Any:
         case "PlanarMap":
             return PlanarMap(_plant(header["nominal"]), resolution)
         case "PlacedArm":
-            arm = UrdfArm.from_text(header["urdf"], header["tip"], header["name"])
+            # Files of before a sensor could be on any link know of no eye.
+            arm = UrdfArm.from_text(
+                header["urdf"], header["tip"], header["name"], header.get("eye")
+            )
             placement = Placement(arrays["T_sensor_base"], arrays["T_flange_marker"])
             # Files of before arms were learned with orientations know neither.
             return PlacedArm(

@@ -9,6 +9,7 @@ import numpy as np
 from handeye.arrays import Array, count
 from handeye.calibration.combined import Combined
 from handeye.calibration.placed_arm import PlacedArm
+from handeye.calibration.view import View
 from handeye.errors import InvalidInput
 from handeye.observations import Target
 from handeye.randomness import stream
@@ -42,6 +43,7 @@ def suggest_poses(
     n: int,
     *,
     wider: bool = False,
+    view: View | None = None,
     working_points: Target | None = None,
 ) -> SuggestedPoses:
     """The n poses that together help the work most, chosen one after the other.
@@ -49,13 +51,15 @@ def suggest_poses(
     After each choice the calibrator, a copy of the one given, is shown what it expects to see
     there: its estimate stays and its uncertainty shrinks. Poses keep the joints' limits. They lie
     in the range in which the joints were when the robot was placed, or, if `wider`, anywhere
-    within the limits where the marker comes into the space in which it was seen then.
+    within the limits where the marker comes into the space in which it was seen then. With a
+    `view` the marker is also where, and turned as, the sensor can see it, and the space in which it
+    was seen before does not count.
 
     Raises:
         InvalidInput: n below 1, working points that make no sense, or no pose in view.
     """
     learner = deepcopy(calibrator)
-    region = _in_view(learner, _CANDIDATES) if wider else None
+    region = _region(learner, _CANDIDATES, view, wider=wider)
     poses: list[Array] = []
     before, after = 0.0, list[float]()
     for i in range(count(n, "n")):
@@ -69,23 +73,45 @@ def suggest_poses(
     return SuggestedPoses(chosen[:, :-1], chosen[:, -1], before, np.array(after))
 
 
-def _in_view(calibrator: Combined, n: int) -> Array | None:
-    """Joints (n, q) within limits that bring the marker into the box where it was seen."""
+def _region(calibrator: Combined, n: int, view: View | None, *, wider: bool) -> Array | None:
+    """Joints (n, q) to choose from; None where the robot's own working range will do."""
     model: Any = calibrator.model
     if not isinstance(model, PlacedArm) or not isinstance(model.arm, UrdfArm):
+        if view is not None:
+            raise InvalidInput("a view is for arms in space: the planar robot's eye turns")
+        return None
+    if view is None and not wider:
         return None
     arm, rng = model.arm, stream("suggest: in view", n)
-    low, high = np.maximum(model.low, arm.lower), np.minimum(model.high, arm.upper)
-    worked = rng.uniform(low, high, (_LOOKED, len(low)))
-    seen = np.percentile(model.placement.predict(arm, worked), [_EDGE, 100.0 - _EDGE], axis=0)
-    freely = np.isinf(arm.lower) | np.isinf(arm.upper)
-    low = np.where(freely, np.minimum(model.low, -np.pi), arm.lower)
-    high = np.where(freely, np.maximum(model.high, np.pi), arm.upper)
+    worked = np.maximum(model.low, arm.lower), np.minimum(model.high, arm.upper)
+    low, high = _limits(model) if wider else worked
     joints = rng.uniform(low, high, (_DRAWN * n, len(low)))
-    places = model.placement.predict(arm, joints)
-    inside = np.all((places > seen[0]) & (places < seen[1]), axis=1)
+    if view is not None:
+        inside = view.sees(model, joints)
+    else:
+        drawn = model.placement.predict(arm, rng.uniform(*worked, (_LOOKED, len(low))))
+        seen = np.percentile(drawn, [_EDGE, 100.0 - _EDGE], axis=0)
+        places = model.placement.predict(arm, joints)
+        inside = np.all((places > seen[0]) & (places < seen[1]), axis=1)
     if not inside.any():
+        if view is None:
+            raise InvalidInput(
+                f"{arm.name}: no other pose brings the marker to where it was seen; leave out "
+                "--wider"
+            )
         raise InvalidInput(
-            f"{arm.name}: no other pose brings the marker to where it was seen; leave out --wider"
+            f"{arm.name}: none of {len(joints)} poses tried has the marker in view; check angles, "
+            "distances and that the sensor looks along its z axis"
+            + ("" if wider else ", or look beyond the working range with --wider")
         )
     return joints[inside][:n]
+
+
+def _limits(model: PlacedArm) -> tuple[Array, Array]:
+    """Of the joints; those without any turn half a turn either way, or as far as they did."""
+    low, high = model.arm.lower, model.arm.upper
+    freely = np.isinf(low) | np.isinf(high)
+    return (
+        np.where(freely, np.minimum(model.low, -np.pi), low),
+        np.where(freely, np.maximum(model.high, np.pi), high),
+    )

@@ -1,7 +1,7 @@
 """How well a calibrator does on rows that it has not learned."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from handeye.arrays import Array, Integers
 from handeye.calibration.arm.residuals import misfit
 from handeye.calibration.arm.robot import ArmRobot
 from handeye.calibration.combined import Combined
+from handeye.calibration.expected import expected_at_rows
 from handeye.calibration.placed_arm import PlacedArm
 from handeye.calibration.results import HeldOut, Validation
 from handeye.calibration.session import AnyCalibrator
@@ -19,9 +20,20 @@ from handeye.randomness import stream
 BLOCKS = 5
 """Contiguous blocks in time, each left out once."""
 
-Learn = Callable[[Observation, Callable[[int], None]], tuple[AnyCalibrator, AnyCalibrator]]
-"""Observations, and what to call with the number learned so far; returns a calibrator with nothing
-but frames placed, and one that learned."""
+
+class Learned(NamedTuple):
+    """Calibrators from the same rows: with frames placed, without error curves, and with all.
+
+    The second is None where there are no curves that it could lack.
+    """
+
+    placed: AnyCalibrator
+    rigid: AnyCalibrator | None
+    whole: AnyCalibrator
+
+
+Learn = Callable[[Integers, Callable[[int], None]], Learned]
+"""Rows to learn, rising, and what to call with the number learned so far."""
 
 
 def left_out(n: int, how: Validation, *, replicate: int = 0, since: int = 0) -> list[Integers]:
@@ -71,30 +83,50 @@ def held_out(
     n, done = len(seen), 0
     everything: Any = seen
     error = whole.errors(everything[since:])
-    errors: list[tuple[Array, Array]] = []
-    turns: list[tuple[Array | None, Array | None]] = []
+    tried: list[tuple[AnyCalibrator, ...]] = []
     moves: list[float] = []
     for part in parts:
         others = np.setdiff1d(np.arange(n), part)
         start = done
-        bare, learner = learn(everything[others], lambda k, start=start: after_each(start + k))
+        learned = learn(others, lambda k, start=start: after_each(start + k))
         done += len(others)
-        test = everything[part]
-        errors.append((bare.errors(test), learner.errors(test)))
-        turns.append((turn_errors(bare, test), turn_errors(learner, test)))
-        apart = learner.errors(everything[since:]) - error
+        tried.append(tuple(c for c in learned if c is not None))
+        apart = learned.whole.errors(everything[since:]) - error
         moves.append(float(np.linalg.norm(apart, axis=1).mean()))
     rows = np.concatenate(parts)
     order = np.argsort(rows)
-    before, after = (np.concatenate(each)[order] for each in zip(*errors, strict=True))
-    turned = [
-        np.concatenate([t for t in each if t is not None])[order] if each[0] is not None else None
-        for each in zip(*turns, strict=True)
+    stages = [
+        _judged(calibrators, everything, parts, order) for calibrators in zip(*tried, strict=True)
     ]
     which = np.repeat(np.arange(len(parts)), [len(part) for part in parts])
+    before, after = stages[0], stages[-1]
+    rigid = stages[1] if len(stages) > 2 else (None, None)
     return HeldOut(
-        rows[order], before, after, which[order], how, turned[0], turned[1], np.array(moves)
-    )
+        rows[order], before[0], after[0], which[order], how, before[1], after[1],
+        np.array(moves), rigid[0], rigid[1], _expected([t[-1] for t in tried], seen, parts, order),
+    )  # fmt: skip
+
+
+def _expected(
+    calibrators: list[AnyCalibrator], seen: Any, parts: list[Integers], order: Integers
+) -> Array | None:
+    """How far each row of all parts was expected to be off, by its own calibrator."""
+    pairs = zip(calibrators, parts, strict=True)
+    sizes = [expected_at_rows(calibrator, seen[part]) for calibrator, part in pairs]
+    known = [size for size in sizes if size is not None]
+    return np.concatenate(known)[order] if len(known) == len(sizes) else None
+
+
+def _judged(
+    calibrators: tuple[AnyCalibrator, ...], seen: Any, parts: list[Integers], order: Integers
+) -> tuple[Array, Array | None]:
+    """Errors and turns of the rows of all parts, each by its own calibrator."""
+    pairs = list(zip(calibrators, parts, strict=True))
+    errors = [calibrator.errors(seen[part]) for calibrator, part in pairs]
+    turns = [turn_errors(calibrator, seen[part]) for calibrator, part in pairs]
+    known = [turn for turn in turns if turn is not None]
+    turned = np.concatenate(known)[order] if len(known) == len(turns) else None
+    return np.concatenate(errors)[order], turned
 
 
 def turn_errors(calibrator: AnyCalibrator, seen: Observation) -> Array | None:

@@ -9,7 +9,8 @@ from rich.markup import escape
 
 from handeye.calibration.exporting import calibrated_joints_yaml, calibrated_urdf, not_in_urdf
 from handeye.calibration.log_checks import check_log
-from handeye.calibration.log_run import arm_of, calibrate_log
+from handeye.calibration.log_run import calibrate_log
+from handeye.calibration.placed import arm_of
 from handeye.calibration.results import CalibrationResult
 from handeye.calibration.storage import save_model
 from handeye.cli.bags import (
@@ -26,8 +27,10 @@ from handeye.cli.bags import (
 from handeye.cli.calibrate_results import as_data, print_results
 from handeye.cli.console import check_places, err, no_page, progress_bar, write_json
 from handeye.cli.robot import ROBOT_HELP, load_robot
+from handeye.cli.setup import Described, calibrate_described
+from handeye.cli.setup_files import Wanted
 from handeye.errors import InvalidInput, MissingExtra
-from handeye.io.bags import BagOptions
+from handeye.io.bags import BagOptions, is_bag
 from handeye.io.files import replace_file
 
 
@@ -50,16 +53,33 @@ class ValidationName(StrEnum):
 
 def calibrate(
     log: Annotated[
-        Path,
+        Path | None,
         typer.Argument(
             help="Log of the robot at work: .csv, .parquet, or a recording (.bag, .mcap, .db3 or "
-            "the folder of a ROS 2 bag).",
+            "the folder of a ROS 2 bag). Not with [bold]--setup[/], which names its tables.",
             show_default=False,
         ),
-    ],
-    robot: Annotated[str, typer.Option(help=ROBOT_HELP, show_default=False)],
+    ] = None,
+    setup_file: Annotated[
+        Path | None,
+        typer.Option(
+            "--setup",
+            help="Instead of a log, a YAML file that describes what was measured, by what, and "
+            "what is known: several sensors, cameras by their pixels, wires, touched points.",
+            show_default=False,
+        ),
+    ] = None,
+    robot: Annotated[str | None, typer.Option(help=ROBOT_HELP, show_default=False)] = None,
     tip: Annotated[
         str | None, typer.Option(help="Link of the URDF that carries the marker.")
+    ] = None,
+    eye: Annotated[
+        str | None,
+        typer.Option(
+            help="Link of the URDF that carries the sensor: a pan-tilt head, a flange with a "
+            "camera, another arm's hand. Without it the sensor stands beside the robot.",
+            show_default=False,
+        ),
     ] = None,
     method: Annotated[
         MethodName | None,
@@ -83,6 +103,22 @@ def calibrate(
     joints_file: Annotated[
         Path | None,
         typer.Option("--joints-yaml", help="Also write the joints' places as YAML for xacro."),
+    ] = None,
+    camera_info: Annotated[
+        Path | None,
+        typer.Option(
+            "--camera-info",
+            help="With [bold]--setup[/], also write cameras as camera_info YAML: a file, or a "
+            "folder for a file of each.",
+        ),
+    ] = None,
+    hand_eye: Annotated[
+        Path | None,
+        typer.Option(
+            "--hand-eye",
+            help="With [bold]--setup[/], also write where sensors are, as easy_handeye2 has it: a "
+            "file, or a folder for a file of each.",
+        ),
     ] = None,
     json_file: Annotated[
         str | None, typer.Option("--json", help="Also write the results as JSON; - prints them.")
@@ -116,14 +152,33 @@ def calibrate(
     docs/reference/json.md.
     """
     check_places(folder, json_file, *(str(f) for f in (urdf_file, joints_file) if f is not None))
-    nominal = load_robot(robot, tip)
+    if setup_file is not None:
+        if log is not None or method is not None:
+            raise InvalidInput("--setup names its tables and its fit: leave out LOG and --method")
+        calibrate_described(
+            Described(setup_file, robot, tip, eye),
+            folder,
+            Wanted(urdf_file, joints_file, camera_info, hand_eye),
+            json_file,
+            validate=validate.value,
+            skip_bad=skip_bad,
+        )
+        return
+    if log is None or robot is None:
+        raise InvalidInput("give a LOG and its --robot, or --setup with a file that describes both")
+    if camera_info is not None or hand_eye is not None:
+        raise InvalidInput("--camera-info and --hand-eye go with --setup")
+    options = BagOptions(joints_topic, points_topic, frame, marker, tolerance, delay, receipt_times)
+    # A recording needs the robot to be read; of a table the joints tell which part of it is meant.
+    table = None if is_bag(log) else read_any(log, options, skip_bad=skip_bad)
+    joints = None if table is None or table.log.kind == "stereo" else table.log.joint_names
+    nominal = load_robot(robot, tip, eye, joints=joints)
     arm = arm_of(nominal)
     if (urdf_file or joints_file) and (robot == "planar" or method not in {None, "combined"}):
         raise InvalidInput(
             "--urdf and --joints-yaml need an arm from a URDF file and --method combined"
         )
-    options = BagOptions(joints_topic, points_topic, frame, marker, tolerance, delay, receipt_times)
-    reading = read_any(log, options, arm=arm, skip_bad=skip_bad)
+    reading = table or read_any(log, options, arm=arm, skip_bad=skip_bad)
     checked = check_log(arm, reading.log, skip_bad=skip_bad)
     with progress_bar("learning, then judging", len(checked.log)) as (progress, task):
         done = calibrate_log(

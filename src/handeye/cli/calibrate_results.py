@@ -8,6 +8,8 @@ from rich.console import Console
 from rich.markup import escape
 
 from handeye.arrays import Array, Integers
+from handeye.calibration.contributions import contributions
+from handeye.calibration.expected import expected_summary
 from handeye.calibration.log_run import Calibration
 from handeye.calibration.results import CalibrationResult, ErrorSummary
 from handeye.calibration.verdict import verdict
@@ -15,6 +17,14 @@ from handeye.cli.console import out, table
 
 _UNCHANGED = 0.05
 _WORST, _PARTS, _LISTED = 5, 8, 5
+_WITH = {
+    "placement": "nominal robot",
+    "geometry": "geometry alone",
+    "error curves": "and error curves",
+    "network": "network",
+    "parameters": "parameters",
+    "all that was learned": "others learned",
+}
 
 
 def as_data(result: CalibrationResult) -> dict[str, Any]:
@@ -39,6 +49,7 @@ def as_data(result: CalibrationResult) -> dict[str, Any]:
         "orientation_before": None if turns is None else asdict(turns[0]),
         "orientation_after": None if turns is None else asdict(turns[1]),
         "errors": result.summary(),
+        "contributions": [asdict(part) for part in contributions(result)],
         "parameters": [asdict(parameter) for parameter in result.parameters],
         "parts": [asdict(part) for part in result.parts],
         "undetermined": list(result.undetermined),
@@ -53,12 +64,14 @@ def as_data(result: CalibrationResult) -> dict[str, Any]:
             "part": held.parts.tolist(),
             "moves": [] if held.moves is None else held.moves.tolist(),
         },
+        "expected_error": expected_summary(result) or None,
         "influence": None
         if pulled is None
         else {
             "row": _rows(result, np.arange(len(result.before))),
             "residual": _numbers(pulled.residual),
             "times_expected": _numbers(pulled.times),
+            "expected": None if pulled.expected is None else _numbers(pulled.expected),
             "left_out": pulled.left_out.tolist(),
         },
         "unit": "m",
@@ -89,29 +102,28 @@ def print_results(done: Calibration, files: dict[str, Any]) -> None:
 
 def _print_errors(result: CalibrationResult, console: Console) -> None:
     held = result.held_out
-    alike = None if held is None else held.alike
-    rows: dict[str, tuple[Array, Integers | None]] = {
-        "all rows, nominal robot": (result.before, None),
-        "all rows, tested, then learned": (result.online, None),
+    rows = {
+        "all rows, nominal robot": ErrorSummary.of(result.before),
+        "all rows, tested, then learned": ErrorSummary.of(result.online),
     }
     if held is not None:
         which = "blocks held out" if held.how == "blocks" else "third held out"
-        rows[f"{which}, nominal robot"] = (held.before, alike)
-        rows[f"{which}, others learned"] = (held.after, alike)
+        rows |= {f"{which}, {_WITH[part.part]}": part.error for part in contributions(result)}
     judged = verdict(result)
     if judged.by == "online":
-        rows["last rows, tested, then learned"] = (judged.after, judged.alike)
+        rows["last rows, tested, then learned"] = judged.summary_after
     shown = table(
         f"{result.robot}: position error of the hand in mm",
         "", "rows", "mean", "95 % interval", "rms", "95 %", "max",
     )  # fmt: skip
-    for name, (errors, parts) in rows.items():
-        shown.add_row(name, *_cells(ErrorSummary.of(errors, parts), 1e3))
-    turns = _turns(result)
-    if held is not None and turns is not None:
+    for name, summary in rows.items():
+        shown.add_row(name, *_cells(summary, 1e3))
+    turned = [part for part in contributions(result) if part.orientation is not None]
+    if turned:
         shown.add_section()
-        for name, summary in zip(list(rows)[2:4], turns, strict=True):
-            shown.add_row(f"{name}, in degrees", *_cells(summary, 1.0))
+        for part in turned:
+            assert part.orientation is not None
+            shown.add_row(f"{_WITH[part.part]}, in degrees", *_cells(part.orientation, 1.0))
     console.print(shown)
 
 

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from handeye.calibration.log_run import arm_of
+from handeye.calibration.placed import arm_of
 from handeye.cli.bags import (
     Frame,
     JointsTopic,

@@ -13,7 +13,7 @@ from handeye.calibration import hand_eye
 from handeye.calibration.hand_eye import HandEye
 from handeye.calibration.hand_eye.samples import Setup
 from handeye.calibration.log_checks import in_order_of
-from handeye.calibration.log_run import arm_of
+from handeye.calibration.placed import arm_of
 from handeye.cli.bags import read_any
 from handeye.cli.console import check_places, err, out, table, write_json
 from handeye.cli.robot import ROBOT_HELP, load_robot

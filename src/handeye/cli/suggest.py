@@ -9,10 +9,12 @@ from rich.markup import escape
 
 from handeye.calibration.combined import Combined
 from handeye.calibration.log_checks import check_log
-from handeye.calibration.log_run import arm_of, calibrate_log
+from handeye.calibration.log_run import calibrate_log
+from handeye.calibration.placed import arm_of
 from handeye.calibration.placed_arm import PlacedArm
 from handeye.calibration.storage import load_model
 from handeye.calibration.suggesting import SuggestedPoses, suggest_poses
+from handeye.calibration.view import View
 from handeye.cli.bags import read_any
 from handeye.cli.console import check_places, err, out, progress_bar, table, write_json
 from handeye.cli.robot import ROBOT_HELP, load_robot
@@ -46,6 +48,28 @@ def suggest(
             "stays in the space in which it was seen.",
         ),
     ] = False,
+    field_of_view: Annotated[
+        float | None,
+        typer.Option(
+            help="The marker stays within this angle across, around the z axis of the sensor's "
+            "frame, degrees.",
+            show_default=False,
+        ),
+    ] = None,
+    near: Annotated[
+        float, typer.Option(help="And no nearer to the sensor than this, metres.")
+    ] = View.near,
+    far: Annotated[
+        float | None, typer.Option(help="And no farther than this, metres.", show_default=False)
+    ] = None,
+    facing: Annotated[
+        float | None,
+        typer.Option(
+            help="And turned away from the sensor by no more than this, degrees: by the z axis of "
+            "the marker's frame, for logs with orientations.",
+            show_default=False,
+        ),
+    ] = None,
     target_file: Annotated[
         Path | None, typer.Option("--out", help="CSV file for the joints.")
     ] = None,
@@ -58,8 +82,9 @@ def suggest(
 ) -> None:
     """Say which poses to add, so that the hand becomes more certain everywhere it works.
 
-    Each pose is the one that helps most, given the ones before. Poses keep the joints' limits;
-    whether something stands in the way is not known here.
+    Each pose is the one that helps most, given the ones before. Poses keep the joints' limits, and
+    with the options on what the sensor sees, the marker stays in its view; whether something stands
+    in the way is not known here.
     """
     check_places(None, json_file, None if target_file is None else str(target_file))
     calibrator, names = _calibrator(source, robot, tip, skip_bad=skip_bad)
@@ -68,7 +93,7 @@ def suggest(
             f"{source}: a {type(calibrator).__name__} does not know how certain it is, so it "
             "cannot suggest poses: calibrate with --method combined"
         )
-    found = suggest_poses(calibrator, n, wider=wider)
+    found = suggest_poses(calibrator, n, wider=wider, view=_view(field_of_view, near, far, facing))
     if target_file is not None:
         write_commands(target_file, names, found.joints)
         err().print(f"{n} poses -> {escape(str(target_file))}", highlight=False)
@@ -76,6 +101,22 @@ def suggest(
         write_json(_as_data(names, found, calibrator), json_file)
     if json_file != "-":
         _print(names, found, calibrator)
+
+
+def _view(
+    field_of_view: float | None, near: float, far: float | None, facing: float | None
+) -> View | None:
+    """As asked for, or None where nothing was."""
+    if (field_of_view, near, far, facing) == (None, View.near, None, None):
+        return None
+    asked: dict[str, float] = {"near": near}
+    if field_of_view is not None:
+        asked["half_angle"] = np.radians(0.5 * field_of_view)
+    if far is not None:
+        asked["far"] = far
+    if facing is not None:
+        asked["facing"] = np.radians(facing)
+    return View(**asked)
 
 
 def _calibrator(

@@ -6,6 +6,7 @@ import numpy as np
 
 from handeye.calibration.results import CalibrationResult, ErrorSummary
 from handeye.calibration.verdict import Verdict, verdict
+from handeye.reports.calibration_expected import expected_section
 from handeye.reports.calibration_parts import open_section, parts_section, rows_section
 from handeye.reports.figures import (
     error_distribution,
@@ -52,6 +53,7 @@ def calibration_page(result: CalibrationResult, *, date: str = "") -> Page:
             *open_section(result),
             Section("Learning while working", [_running(result)]),
             Section("Where the hand misses", _places(result, judged)),
+            *expected_section(result),
             *rows_section(result),
             *_rejected(result),
         ],
@@ -129,6 +131,7 @@ _STAGES = {
     "before": "All rows, without learning",
     "online": "All rows, with learning (test, then train)",
     "held_out_before": "Held-out rows, without learning",
+    "held_out_rigid": "Held-out rows, lengths, directions and zeros alone",
     "held_out_after": "Held-out rows, after learning",
 }
 
@@ -145,7 +148,7 @@ def _table(result: CalibrationResult) -> Table:
         columns=(*heads, "Interval of the mean [mm]"),
         rows=rows,
         caption="Distance between where the hand was seen and where it was expected.",
-        emphasis=frozenset({i for i in (1, 3) if i < len(rows)}),
+        emphasis=frozenset({1, len(rows) - 1}),
     )
 
 

@@ -1,6 +1,7 @@
 """Parts of the calibration page that name things: parts of the robot, rows, open directions."""
 
-from handeye.calibration.results import CalibrationResult
+from handeye.arrays import Array
+from handeye.calibration.results import CalibrationResult, Influence, PartChange
 from handeye.reports.page import Badge, Notes, Section, Table
 from handeye.reports.style import significant
 
@@ -17,7 +18,7 @@ def parts_section(result: CalibrationResult) -> list[Section]:
             significant(1e3 * part.moves, 3),
             f"{100 * part.known:.0f} %",
             part.unknown,
-            f"{part.change:+.3g} ± {part.std:.2g} {part.unit}".rstrip(),
+            _change(part),
         ]
         for part in result.parts[:_PARTS]
     ]
@@ -40,6 +41,15 @@ def parts_section(result: CalibrationResult) -> list[Section]:
     ]
 
 
+def _change(part: PartChange) -> str:
+    """In thousandths of metres and radians, which parts of robots are off by."""
+    if part.unit not in {"m", "rad"}:
+        return f"{part.change:+.3g} ± {part.std:.2g} {part.unit}".rstrip()
+    return f"{1e3 * part.change:+.3g} ± {1e3 * part.std:.2g} m{part.unit}".replace(
+        "-", "\N{MINUS SIGN}"
+    )
+
+
 def open_section(result: CalibrationResult) -> list[Section]:
     """What the poses do not determine."""
     if not result.undetermined:
@@ -57,15 +67,18 @@ def rows_section(result: CalibrationResult) -> list[Section]:
     pulled = result.influence
     if pulled is None:
         return []
+    surprise = surprises(pulled)
     rows: list[list[str | Badge]] = []
     for i in pulled.worst(_ROWS).tolist():
         said = Badge("not believed", "bad") if pulled.left_out[i] else Badge("used")
+        expected = [] if surprise is None else [significant(float(surprise[i]), 2)]
         rows.append(
             [
                 str(i if result.rows is None else result.rows[i]),
                 "" if result.times is None else f"{result.times[i]:.6g}",
                 significant(1e3 * float(pulled.residual[i]), 3),
                 significant(float(pulled.times[i]), 2),
+                *expected,
                 said,
             ]
         )
@@ -79,5 +92,17 @@ def rows_section(result: CalibrationResult) -> list[Section]:
             f" Without any one of the parts held out, predictions move by {significant(moves, 2)} "
             "mm at most, in the mean over the rows."
         )
-    heads = ("Row", "Time [s]", "Error [mm]", "Times the ordinary", "")
-    return [Section("Rows to look at first", [Table(heads, rows, caption, words=frozenset({4}))])]
+    heads = ["Row", "Time [s]", "Error [mm]", "Times the ordinary"]
+    if surprise is not None:
+        heads.append("Times the expected")
+        caption += (
+            " What was expected also counts how well the model knows the robot in that posture: "
+            "one row in twenty should exceed 1.6 times that, and one in a hundred 1.9 times."
+        )
+    words = frozenset({len(heads)})
+    return [Section("Rows to look at first", [Table([*heads, ""], rows, caption, words=words)])]
+
+
+def surprises(pulled: Influence) -> Array | None:
+    """Error of each row over what was expected, (N,); None where nobody knew what to expect."""
+    return None if pulled.expected is None else pulled.residual / pulled.expected

@@ -2,7 +2,7 @@
 
 from typing import Protocol
 
-from handeye.arrays import Array
+from handeye.arrays import Array, Booleans
 
 
 class Arm(Protocol):
@@ -26,6 +26,11 @@ class Arm(Protocol):
     @property
     def upper(self) -> Array:
         """Upper joint limits (n,) [rad] or [m], inf where there is none."""
+        ...
+
+    @property
+    def held(self) -> Booleans:
+        """(n,) which joints stay where they are when the marker is brought to a place."""
         ...
 
     @property

@@ -24,6 +24,7 @@ class TwoLinkArm:
     joint_names = ("alpha", "beta")
     lower = np.full(2, -np.pi)
     upper = np.full(2, np.pi)
+    held = np.zeros(2, np.bool_)
 
     def __post_init__(self) -> None:
         for name in ("a", "b"):

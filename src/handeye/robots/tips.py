@@ -1,4 +1,8 @@
-"""Which link of a robot carries the marker when nobody says so."""
+"""Which links of a robot carry the marker and the sensor when nobody says so."""
+
+from collections.abc import Collection
+from difflib import get_close_matches
+from typing import NamedTuple
 
 from handeye.errors import InvalidInput
 
@@ -6,6 +10,39 @@ from handeye.errors import InvalidInput
 # moving one serves as well, since the marker's place on it is estimated; but `tool0` (so called by
 # ROS-Industrial) is also the frame in which the robot's own controller reports its pose.
 _FLANGE_NAMES = ("flange", "tool0", "ee_link", "end_effector", "link_eef")
+
+
+class Ends(NamedTuple):
+    """The links that carry the marker and, if it is not the root, the sensor."""
+
+    tip: str
+    eye: str | None
+
+
+def chosen_links(
+    links: dict[str, int], ways: list[list[int]], name: str, tip: str | None, eye: str | None
+) -> Ends:
+    """The links asked for, or those that are usual.
+
+    links: which joint moves each, the root first; ways: the joints from the root to each joint,
+    itself the last.
+
+    Raises:
+        InvalidInput: for a link that is not there, or that no joint moves against the other; if no
+            tip is given, when several are possible.
+    """
+    for link in (tip, eye):
+        if link is not None and link not in links:
+            raise InvalidInput(f"{name} has no link {link!r}: choose one of {_near(link, links)}")
+    base = 0 if eye is None else links[eye]
+    if tip is None:
+        tip = default_tip(ways, links, name)
+        if links[tip] == base:
+            tip = next(iter(links))
+    if links[tip] == base:
+        moved = f"the link {tip!r}" if eye is None else f"the link {tip!r} against {eye!r}"
+        raise InvalidInput(f"{name}: no joint moves {moved}: choose one beyond a joint")
+    return Ends(tip, eye)
 
 
 def default_tip(ways: list[list[int]], joints: dict[str, int], name: str) -> str:
@@ -32,3 +69,7 @@ def default_tip(ways: list[list[int]], joints: dict[str, int], name: str) -> str
         "is not clear; say with --tip LINK (in Python: tip=) which link carries the marker:\n"
         f"  ends: {', '.join(tips)}{before}"
     )
+
+
+def _near(link: str, links: Collection[str]) -> str:
+    return ", ".join(get_close_matches(link, links, n=3, cutoff=0.5) or links)

@@ -1,69 +1,76 @@
 """Arms described by URDF files, through pinocchio."""
 
-from collections.abc import Collection
+from collections.abc import Sequence
 from difflib import get_close_matches
 from functools import cache
 from importlib import import_module
-from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 from typing import Any, Self
-from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from handeye.arrays import Array, shaped
+from handeye.arrays import Array, Booleans
 from handeye.errors import FileFormatError, InvalidInput, MissingExtra
+from handeye.robots.readings import Readings, followers
+from handeye.robots.shipped import shipped_robots
 from handeye.robots.stages import Stages
-from handeye.robots.tips import default_tip
+from handeye.robots.tips import chosen_links
+from handeye.robots.ways import Way
+
+FREE_TRAVEL = 1.0
+"""Of a sliding joint without limits [m]."""
 
 
 class UrdfArm:
-    """The chain of joints from the root of a URDF to one of its links; implements `Arm`.
+    """The chain of joints from one link of a URDF to another; implements `Arm`.
 
-    The base is the root link, the flange is `tip`. Without `tip` it is the end of the longest
-    chain of moving joints: a link fixed there with a usual flange name (`flange`, `tool0`,
-    `ee_link`, ...), or else the last moving link itself. Every angle is in radians, also of
-    continuous joints. Joints off the chain rest at zero. Meshes are not needed.
+    The base is the link `eye`, by default the root; the flange is `tip`. The eye is the link to
+    which the sensor is fixed: a pan-tilt head that looks at a hand, a flange that carries a camera.
+    The chain then leads from it through the tree, and joints on the eye's own side enter inverted.
+
+    Without `tip` it is the end of the longest chain of moving joints: a link fixed there with a
+    usual flange name (`flange`, `tool0`, `ee_link`, ...), or else the last moving link itself. If
+    that is where the eye is, it is the root: the marker stands beside the robot.
+
+    Every angle is in radians, also of continuous joints. A mimic joint stands where the joint that
+    it follows says. Joints off the chain rest at zero. Meshes are not needed.
     """
 
-    def __init__(
-        self, model: Any, tip: str, name: str, urdf: str, mimics: Collection[str] = ()
-    ) -> None:
+    def __init__(self, model: Any, tip: str, name: str, urdf: str, eye: str | None = None) -> None:
         self.tip = tip
+        self.eye = eye
         self.name = name
         self.urdf = urdf
         self._model = model
         self._data: Any = model.createData()
         # A joint may have the same name.
-        self._tip = int(model.getFrameId(tip, _pinocchio().FrameType.BODY))
-        chain = list(model.supports[model.frames[self._tip].parentJoint])[1:]
-        self._chain: list[int] = chain
-        self.joint_names = tuple(str(model.names[i]) for i in chain)
+        body = _pinocchio().FrameType.BODY
+        self._tip = int(model.getFrameId(tip, body))
+        self._eye = None if eye is None else int(model.getFrameId(eye, body))
+        ends = (0 if i is None else model.frames[i].parentJoint for i in (self._eye, self._tip))
+        self._way = Way.between(*(list(model.supports[joint]) for joint in ends))
+        chain = self._way.joints
+        self.stage_names = tuple(str(model.names[i]) for i in chain)
+        self.readings = Readings.of_chain(self.stage_names, followers(urdf))
+        for joint in dict.fromkeys((*self.stage_names, *self.readings.names)):
+            _refuse_unless_single(model, joint, name, tip)
         joints = [model.joints[i] for i in chain]
-        for joint, joint_name in zip(joints, self.joint_names, strict=True):
-            if joint.nv != 1 or joint_name in mimics:
-                raise InvalidInput(
-                    f"{name}: joint {joint_name} on the way to {tip} is no revolute, continuous or "
-                    "prismatic joint of its own: choose a link before it with --tip (in Python: "
-                    "tip=)"
-                )
         self._turns_freely = np.array([joint.nq == 2 for joint in joints], dtype=bool)
         self._at = np.array([joint.idx_q for joint in joints], dtype=np.int64)
         self._speed_at = np.array([joint.idx_v for joint in joints], dtype=np.int64)
-        low, high = model.lowerPositionLimit[self._at], model.upperPositionLimit[self._at]
-        # A limit that the file leaves out reads as 0 <= q <= 0.
-        unlimited = self._turns_freely | (low >= high)
-        self.lower: Array = np.where(unlimited, -np.inf, low)
-        self.upper: Array = np.where(unlimited, np.inf, high)
+        self.lower, self.upper = _limits(model, self.readings.names)
+        ends = self.readings.ends(self.lower, self.upper)
+        unlimited = ~np.isfinite(ends).all(axis=0)
+        self.travel: Array = np.where(unlimited, FREE_TRAVEL, np.abs(ends[1] - ends[0]))
         # All links stretched in one line, sliding joints far out: nothing is farther away.
         stages = self.stages()
-        travel = np.maximum(np.abs(self.lower), np.abs(self.upper))[stages.slides]
+        far = np.where(unlimited, FREE_TRAVEL, np.max(np.abs(ends), axis=0))[stages.slides]
         lengths = np.linalg.norm(stages.placements[:, :3, 3], axis=1)
-        self.reach = float(lengths.sum() + travel.sum())
+        self.reach = float(lengths.sum() + far.sum())
 
     @classmethod
-    def from_file(cls, path: Path | str, tip: str | None = None) -> Self:
+    def from_file(cls, path: Path | str, tip: str | None = None, eye: str | None = None) -> Self:
         """The arm in a URDF file.
 
         Raises:
@@ -71,10 +78,10 @@ class UrdfArm:
             FileFormatError: when the file is no URDF.
             MissingExtra: without pinocchio.
         """
-        return cls._load(Path(path), tip, Path(path).stem)
+        return cls._load(Path(path), tip, Path(path).stem, eye)
 
     @classmethod
-    def shipped(cls, name: str, tip: str | None = None) -> Self:
+    def shipped(cls, name: str, tip: str | None = None, eye: str | None = None) -> Self:
         """A robot that example-robot-data ships, for example "ur10".
 
         Raises:
@@ -90,86 +97,104 @@ class UrdfArm:
                 f"no robot is called {name!r}{meant}\n  shipped: {', '.join(sorted(robots))}\n"
                 "  or give the path of a .urdf file"
             )
-        return cls._load(robots[name], tip, name)
+        return cls._load(robots[name], tip, name, eye)
 
     @classmethod
-    def _load(cls, path: Path, tip: str | None, name: str) -> Self:
+    def _load(cls, path: Path, tip: str | None, name: str, eye: str | None) -> Self:
         if not path.is_file():
             raise InvalidInput(f"{path}: there is no such URDF file")
         try:
-            return cls.from_text(path.read_text(encoding="utf-8"), tip, name)
+            return cls.from_text(path.read_text(encoding="utf-8"), tip, name, eye)
         except (FileFormatError, UnicodeDecodeError) as error:
             raise FileFormatError(f"{path}: {error}") from error
 
     @classmethod
-    def from_text(cls, urdf: str, tip: str | None, name: str) -> Self:
+    def from_text(cls, urdf: str, tip: str | None, name: str, eye: str | None = None) -> Self:
         """The arm in the text of a URDF file; raises as `from_file`."""
-        pin = _pinocchio()
         try:
-            followers = ElementTree.fromstring(urdf).iterfind("joint[mimic]")
-            mimics = {follower.get("name", "") for follower in followers}
-            model = pin.buildModelFromXML(urdf)
-        except (ElementTree.ParseError, ValueError, RuntimeError) as error:
+            model = _pinocchio().buildModelFromXML(urdf)
+        except (ValueError, RuntimeError) as error:
             raise FileFormatError(
                 f"is not a usable URDF file ({error}); expand a xacro file with `xacro` first"
             ) from error
-        bodies = [frame for frame in model.frames if frame.type == pin.FrameType.BODY]
-        joints = {str(body.name): int(body.parentJoint) for body in bodies}
-        if tip is None:
-            tip = default_tip([list(way) for way in model.supports], joints, name)
-        elif tip not in joints:
-            near = get_close_matches(tip, joints, n=3, cutoff=0.5) or joints
-            raise InvalidInput(f"{name} has no link {tip!r}: choose one of {', '.join(near)}")
-        elif joints[tip] == 0:
-            raise InvalidInput(
-                f"{name}: no joint moves the link {tip!r}: choose one beyond a joint"
-            )
-        return cls(model, tip, name, urdf, mimics)
+        bodies = [frame for frame in model.frames if frame.type == _pinocchio().FrameType.BODY]
+        links = {str(body.name): int(body.parentJoint) for body in bodies}
+        ends = chosen_links(links, [list(way) for way in model.supports], name, tip, eye)
+        return cls(model, ends.tip, name, urdf, ends.eye)
+
+    @property
+    def held(self) -> Booleans:
+        """(m,) which joints stay where they are when the marker is brought to a place.
+
+        Those that move the eye, if others move the hand: a place is seen from where the eye is.
+        """
+        out = np.zeros(len(self.joint_names), np.bool_)
+        out[self.readings.of[: len(self._way.up)]] = True
+        return out & ~out.all()
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Of the joints that are read, in the order of every joint array."""
+        return self.readings.names
 
     def poses(self, joints: ArrayLike) -> Array:
-        """T_base_flange (N, 4, 4) at joints (N, n) [rad]; raises InvalidInput for other shapes."""
+        """T_base_flange (N, 4, 4) at joints (N, m); raises InvalidInput for other shapes."""
         pin, model, data = _pinocchio(), self._model, self._data
         configurations = self._configurations(joints)
         out = np.empty((len(configurations), 4, 4))
         for pose, configuration in zip(out, configurations, strict=True):
             pin.forwardKinematics(model, data, configuration)
-            pose[:] = pin.updateFramePlacement(model, data, self._tip).homogeneous
+            place = pin.updateFramePlacement(model, data, self._tip)
+            if self._eye is not None:
+                place = pin.updateFramePlacement(model, data, self._eye).actInv(place)
+            pose[:] = place.homogeneous
         return out
 
     def jacobians(self, joints: ArrayLike) -> Array:
-        """Flange velocity per joint velocity (N, 6, n), linear rows first, in base axes.
+        """Flange velocity per joint velocity (N, 6, m), linear rows first, in base axes.
 
-        Raises InvalidInput for joints of another shape than (N, n).
+        Raises InvalidInput for joints of another shape than (N, m).
         """
         pin, model, data = _pinocchio(), self._model, self._data
         configurations = self._configurations(joints)
-        out = np.empty((len(configurations), 6, len(self.joint_names)))
+        out = np.empty((len(configurations), 6, len(self._speed_at)))
         for jacobian, configuration in zip(out, configurations, strict=True):
-            jacobian[:] = pin.computeFrameJacobian(
-                model, data, configuration, self._tip, pin.LOCAL_WORLD_ALIGNED
-            )[:, self._speed_at]
-        return out
+            way = model, data, configuration
+            by = pin.computeFrameJacobian(*way, self._tip, pin.LOCAL_WORLD_ALIGNED)
+            if self._eye is not None:
+                own = pin.computeFrameJacobian(*way, self._eye, pin.LOCAL_WORLD_ALIGNED)
+                eye, tip = data.oMf[self._eye], data.oMf[self._tip]
+                R, apart = eye.rotation.T, tip.translation - eye.translation
+                carried = own[:3] + np.cross(own[3:], apart, axisa=0, axisc=0)
+                by = np.vstack([R @ (by[:3] - carried), R @ (by[3:] - own[3:])])
+            jacobian[:] = by[:, self._speed_at]
+        return self.readings.slopes(out)
 
     def stages(self) -> Stages:
-        """The constants of the chain from root to tip."""
-        return Stages.of(self._model, self._chain, self._model.frames[self._tip])
+        """The constants of the chain from base to tip."""
+        eye = np.eye(4) if self._eye is None else self._place(self._eye)
+        return Stages.of(self._model, self._way, eye, self._place(self._tip))
 
     def loads(self, joints: ArrayLike) -> Array:
-        """Torque of gravity about (force along) each joint's axis, (N, n) [Nm] or [N].
+        """Torque of gravity about (force along) each stage's axis, (N, n) [Nm] or [N].
 
-        From the masses in the file, with gravity along -z of the base; zero where it has none.
-        Raises InvalidInput for joints of another shape than (N, n).
+        From the masses in the file, with gravity along -z of the root; zero where it has none.
+        Raises InvalidInput for joints of another shape than (N, m).
         """
         pin, model, data = _pinocchio(), self._model, self._data
         configurations = self._configurations(joints)
-        out = np.empty((len(configurations), len(self.joint_names)))
+        out = np.empty((len(configurations), len(self._speed_at)))
         for load, configuration in zip(out, configurations, strict=True):
             load[:] = -pin.computeGeneralizedGravity(model, data, configuration)[self._speed_at]
         return out
 
+    def _place(self, frame: int) -> Array:
+        """Of a link (4, 4), in the frame of the joint that carries it."""
+        return np.asarray(self._model.frames[frame].placement.homogeneous)
+
     def _configurations(self, joints: ArrayLike) -> Array:
         """Pinocchio's own coordinates: (cos, sin) for a continuous joint, else the value."""
-        q = shaped(joints, (None, len(self.joint_names)), "joints")
+        q = self.readings.positions(joints)
         out = np.tile(_pinocchio().neutral(self._model), (len(q), 1))
         free = self._turns_freely
         out[:, self._at] = np.where(free, np.cos(q), q)
@@ -177,42 +202,39 @@ class UrdfArm:
         return out
 
 
-def load_arm(spec: str, tip: str | None = None) -> UrdfArm:
+def load_arm(spec: str, tip: str | None = None, eye: str | None = None) -> UrdfArm:
     """The arm in a .urdf file, or the shipped robot of that name.
 
     Raises:
         InvalidInput, FileFormatError, MissingExtra: as `UrdfArm.from_file` and `UrdfArm.shipped`.
     """
     if Path(spec).suffix == ".urdf" or Path(spec).is_file():
-        return UrdfArm.from_file(spec, tip)
-    return UrdfArm.shipped(spec, tip)
+        return UrdfArm.from_file(spec, tip, eye)
+    return UrdfArm.shipped(spec, tip, eye)
 
 
-@cache
-def shipped_robots() -> dict[str, Path]:
-    """The URDF files of example-robot-data by name.
-
-    The name is the file's, without `_robot` at its end (which wins over a file without); where
-    two robots share one, the folder goes before it (`anymal_b_simple/anymal`).
-
-    Raises:
-        MissingExtra: when example-robot-data is not installed.
-    """
-    try:
-        files = distribution("example-robot-data").files or []
-    except PackageNotFoundError as error:
-        raise MissingExtra("a robot known by name", "robots") from error
-    paths = [Path(str(file.locate())) for file in files if file.suffix == ".urdf"]
-    paths = [path for path in paths if path.with_name(f"{path.stem}_robot.urdf") not in paths]
-    short = [path.stem.removesuffix("_robot") for path in paths]
-    return {
-        name if short.count(name) == 1 else f"{_package(path)}/{name}": path
-        for name, path in zip(short, paths, strict=True)
-    }
+def _refuse_unless_single(model: Any, joint: str, name: str, tip: str) -> None:
+    if not model.existJointName(joint):
+        raise InvalidInput(
+            f"{name}: a mimic joint on the way to {tip} follows {joint!r}, which is no moving joint"
+        )
+    if model.joints[model.getJointId(joint)].nv != 1:
+        raise InvalidInput(
+            f"{name}: joint {joint} on the way to {tip} is no revolute, continuous or prismatic "
+            "joint: choose a link before it with --tip (in Python: tip=), or begin beyond it with "
+            "--eye (eye=)"
+        )
 
 
-def _package(path: Path) -> str:
-    return path.parents[1].name.removesuffix("_description")
+def _limits(model: Any, joints: Sequence[str]) -> tuple[Array, Array]:
+    """Lower and upper ones (m,) of joints [rad] or [m], infinite where there are none."""
+    numbers = [model.getJointId(joint) for joint in joints]
+    at = np.array([model.joints[i].idx_q for i in numbers], dtype=np.int64)
+    freely = np.array([model.joints[i].nq == 2 for i in numbers], dtype=bool)
+    low, high = model.lowerPositionLimit[at], model.upperPositionLimit[at]
+    # A limit that the file leaves out reads as 0 <= q <= 0.
+    unlimited = freely | (low >= high)
+    return np.where(unlimited, -np.inf, low), np.where(unlimited, np.inf, high)
 
 
 @cache

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
+from tests.robots.made import TORSO, palletiser, redundant
 
 from handeye.calibration.arm.description import describe, seen_rows
 from handeye.calibration.arm.kernels import SerialArm, pose_many
@@ -27,6 +28,13 @@ NOISE, TURN_NOISE = 5e-5, 2e-4
 
 @cache
 def arm(name="ur10"):
+    match name:
+        case "torso":  # a hand seen by a head that pans and tilts
+            return UrdfArm.from_text(TORSO, "left_hand", name, "camera")
+        case "palletiser":  # two of its joints follow a third
+            return UrdfArm.from_text(palletiser(), None, name)
+        case "redundant":  # eight joints
+            return UrdfArm.from_text(redundant(), None, name)
     return UrdfArm.shipped(name)
 
 

@@ -76,7 +76,11 @@ def points(rng: np.random.Generator, setup: str) -> Instrument:
 def poses(rng: np.random.Generator, setup: str) -> Instrument:
     return PoseSightings(
         joints=np.zeros((N, 6)), measured=flanges(rng), std=np.full((N, 6), 1e-4), name="probe",
-        setup=setup, sensor=Frame.near("sensor", pose(rng)), target=Frame.near("target", pose(rng)),  # pyright: ignore[reportArgumentType]
+        sight=Sight(
+            setup,  # pyright: ignore[reportArgumentType]
+            Frame.near("sensor", pose(rng)), Frame.near("target", pose(rng)),
+            Points.known(), np.zeros(N, np.int64),
+        ),
     )  # fmt: skip
 
 

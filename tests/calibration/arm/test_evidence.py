@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from handeye.calibration.arm import evidence
-from handeye.calibration.arm.evidence import Rows, solve
+from handeye.calibration.arm import evidence, student
+from handeye.calibration.arm.evidence import solve
+from handeye.calibration.arm.system import Rows
 
 
 @dataclass
@@ -20,6 +21,10 @@ class Linear:
     groups: np.ndarray
     channels: np.ndarray
     std: np.ndarray
+
+    @property
+    def shown(self):
+        return np.ones(len(self.tolerance), bool)
 
     @property
     def n_rows(self):
@@ -51,7 +56,7 @@ def made(seed=0, n=60, k=2, unknowns=6, noise=0.1, widths=(2.0, 0.3), channels=(
 @pytest.fixture
 def normal_noise(monkeypatch):
     """No tails: then the evidence has a closed form."""
-    monkeypatch.setattr(evidence, "FREEDOM", 1e9)
+    monkeypatch.setattr(student, "FREEDOM", 1e9)
     monkeypatch.setattr(evidence, "_SETTLED", 1e-9)
     monkeypatch.setattr(evidence, "_SAME_NOISE", 1e-9)
     monkeypatch.setattr(evidence, "_ROUNDS", 150)

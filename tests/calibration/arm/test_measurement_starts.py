@@ -68,8 +68,8 @@ def test_a_pose_sensor_and_its_target_are_placed(setup: Setup):
     S = np.array([inverse(P) @ carrier(setup, a) @ Q for a in A])
     kind = PoseSightings.start(np.zeros((N, 6)), A, S, setup=setup, sensor="eye", target="tag")
     exact(kind, A)
-    np.testing.assert_allclose(kind.sensor.reference, P, atol=1e-6)
-    np.testing.assert_allclose(kind.target.reference, Q, atol=1e-6)
+    np.testing.assert_allclose(kind.sight.sensor.reference, P, atol=1e-6)
+    np.testing.assert_allclose(kind.sight.target.reference, Q, atol=1e-6)
     assert [block.name for block in kind.blocks] == ["eye", "tag"]
 
 
@@ -146,11 +146,8 @@ def test_the_anchor_of_a_wire_is_placed(zero: float):
     exact(kind, A)
     np.testing.assert_allclose(kind.sight.sensor.reference[:3, 3], anchor, atol=1e-5)
     np.testing.assert_allclose(kind.sight.points.reference[0], c, atol=1e-5)
-    assert [b.name for b in kind.blocks] == [
-        "anchor",
-        "wire end",
-        *(["anchor zero"] if zero else []),
-    ]
+    names = ["anchor", "wire end", *["anchor zero"] * (zero > 0.0)]
+    assert [b.name for b in kind.blocks] == names
 
 
 def test_a_ball_bar_of_unknown_anchor_is_placed():
@@ -175,6 +172,17 @@ def test_a_plane_is_placed():
     exact(kind, A)
     assert abs(kind.sight.sensor.reference[:3, 2] @ T[:3, 2]) == pytest.approx(1.0, abs=1e-12)
     assert kind.blocks[0].names == ("plane z", "plane rx", "plane ry")
+
+
+def test_a_gauge_counts_up_from_its_plane():
+    rng = np.random.default_rng(12)
+    T, high = pose(rng), rng.uniform(-0.1, 0.3, N)
+    tips = transform(T, np.column_stack([0.3 * rng.standard_normal((N, 2)), high]))
+    A = make_pose(flanges(rng, N)[:, :3, :3], tips)
+    kind = PlaneContacts.start(np.zeros((N, 6)), A, heights=high)
+    exact(kind, A)
+    np.testing.assert_array_equal(kind.measured[:, 0], high)
+    assert kind.sight.sensor.reference[:3, 2] @ T[:3, 2] == pytest.approx(1.0, abs=1e-9)
 
 
 def in_sockets(rng: np.random.Generator, sockets: Array) -> tuple[Array, Integers, Array]:

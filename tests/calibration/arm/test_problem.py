@@ -8,7 +8,7 @@ from tests.calibration.arm.arms import NOISE, SHEET, arm, errors_of, model, pose
 
 from handeye.calibration.arm.evidence import solve
 from handeye.calibration.arm.measurement import Block
-from handeye.calibration.arm.measurements import Frame, PoseSightings
+from handeye.calibration.arm.measurements import Frame, Points, PoseSightings, Sight
 from handeye.calibration.arm.problem import ArmProblem
 from handeye.calibration.arm.sheet import CurveTerms
 from handeye.errors import InvalidInput
@@ -26,9 +26,9 @@ def posed(n=100, seed=0):
     S = make_pose(matrix_from_wxyz(seen.orientation), seen.position)
     sensor = Frame.near("tracker", np.linalg.inv(placed.placement.T_sensor_base))
     target = Frame.near("marker", placed.placement.T_flange_marker)
-    measured = PoseSightings(
-        joints=seen.joints, measured=S, setup="eye_to_hand", sensor=sensor, target=target
-    )
+    first = np.zeros(n, np.int64)
+    sight = Sight("eye_to_hand", sensor, target, Points.known(), first)
+    measured = PoseSightings(joints=seen.joints, measured=S, sight=sight)
     return measured, x
 
 
@@ -78,7 +78,8 @@ def test_it_refuses_what_does_not_fit():
         ArmProblem(arm(), [], STIFF, STIFF.curves)
     with pytest.raises(InvalidInput, match="has 7 joints"):
         ArmProblem(arm("xarm7"), [measured], STIFF, STIFF.curves)
-    other = replace(measured, sensor=replace(measured.sensor, tolerance=np.full(6, 0.5)))
+    loose = replace(measured.sight.sensor, tolerance=np.full(6, 0.5))
+    other = replace(measured, sight=replace(measured.sight, sensor=loose))
     with pytest.raises(InvalidInput, match="describe tracker differently"):
         ArmProblem(arm(), [measured, other], STIFF, STIFF.curves)
 

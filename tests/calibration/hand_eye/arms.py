@@ -21,6 +21,7 @@ class Wrist:
     lower = np.full(4, -np.pi)
     upper = np.full(4, np.pi)
     reach = 1.1
+    held = np.zeros(4, np.bool_)
 
     def __init__(self, errors: Array | None = None) -> None:
         self.errors = np.zeros((4, 6)) if errors is None else errors

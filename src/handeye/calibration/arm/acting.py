@@ -5,16 +5,16 @@ from typing import NamedTuple
 import numpy as np
 
 from handeye._compiled import compiled
-from handeye.arrays import Array
+from handeye.arrays import Array, Booleans
 from handeye.calibration.arm.kernels import (
     TWIST,
     SerialArm,
-    carry,
     chain,
     joint_at,
     pose,
     waves,
 )
+from handeye.calibration.arm.motions import carry
 
 _ITERATIONS = 200
 ARRIVED = 1e-7
@@ -24,10 +24,15 @@ _LARGEST_STEP = 0.3  # [rad] or [m], so that the arm stays on the side of its po
 
 
 class Bounds(NamedTuple):
-    """Where an arm may go: limits low and high (n,), envelope [m] of corrections; its reach [m]."""
+    """Where an arm may go.
+
+    low, high (m,): limits of the readings; held (m,): which stay as they are; envelope [m] of
+    corrections; its reach [m].
+    """
 
     low: Array
     high: Array
+    held: Booleans
     envelope: float
     reach: float
 
@@ -76,7 +81,7 @@ def predicted_many(
 
 @compiled
 def by_joints(kernel: SerialArm, x: Array, seen: Array, J: Array) -> None:
-    """J (3, n), overwritten: the marker's shift per reading, but for the slopes of curves.
+    """J (3, m), overwritten: the marker's shift per reading, but for the slopes of curves.
 
     Those are some milliradians per radian: Newton's method needs a step more for them.
     """
@@ -86,11 +91,12 @@ def by_joints(kernel: SerialArm, x: Array, seen: Array, J: Array) -> None:
     moved = np.empty((TWIST, TWIST + 1))
     waves(kernel, seen, wave)
     chain(kernel, x, seen, wave, T, ways, origins)
+    J[:] = 0.0
     for j in range(n):
         carry(ways[1 + j], origins[1 + j], T, moved)
         scale = 1.0 + x[joint_at(kernel, j) + TWIST]
         for i in range(3):
-            J[i, j] = scale * moved[i, TWIST]
+            J[i, kernel.of[j]] += kernel.gains[j] * scale * moved[i, TWIST]
 
 
 @compiled
@@ -102,11 +108,12 @@ def seek(
     Damped Gauss-Newton, `dq = J^T (J J^T + damping^2)^-1 e`, within limits. Returns by how
     much the marker misses [m].
     """
-    n = len(kernel.slides)
+    n = kernel.n_readings
     J, places, error = np.empty((3, n)), np.empty((2, 3)), np.empty(3)
     missed = np.inf
     for j in range(n):
-        row[j] = min(max(row[j], bounds.low[j]), bounds.high[j])
+        if not bounds.held[j]:
+            row[j] = min(max(row[j], bounds.low[j]), bounds.high[j])
     for _ in range(_ITERATIONS):
         predicted(kernel, x, extra, row, bounds.envelope, places)
         missed = 0.0
@@ -117,6 +124,9 @@ def seek(
         if missed <= ARRIVED:
             break
         by_joints(kernel, x, row, J)
+        for j in range(n):
+            if bounds.held[j]:
+                J[:, j] = 0.0
         square = J @ J.T
         for i in range(3):
             square[i, i] += (_DAMPING * bounds.reach) ** 2
@@ -124,7 +134,8 @@ def seek(
         largest = np.max(np.abs(step))
         part = min(1.0, _LARGEST_STEP / largest) if largest > 0.0 else 1.0
         for j in range(n):
-            row[j] = min(max(row[j] + part * step[j], bounds.low[j]), bounds.high[j])
+            if not bounds.held[j]:
+                row[j] = min(max(row[j] + part * step[j], bounds.low[j]), bounds.high[j])
     return missed
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from handeye.calibration.arm.kernels import TWIST, SerialArm, joint_at, n_unknowns
+from handeye.calibration.arm.residuals import measured_at
 from handeye.calibration.arm.sheet import ArmSheet
 from handeye.calibration.engine.chain import Chain, Group
 
@@ -65,7 +66,7 @@ def arm_chain(kernel: SerialArm, joint_names: tuple[str, ...], sheet: ArmSheet) 
         n_moving=TWIST + m,
         n_values=6 if kernel.oriented else 3,
         n_hand=3,
-        n_seen=(2 if kernel.compliant else 1) * n + (10 if kernel.oriented else 6),
+        n_seen=measured_at(kernel) + (10 if kernel.oriented else 6),
         groups=tuple(groups),
         changes=(
             *offsets,

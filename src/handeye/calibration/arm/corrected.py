@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from handeye.arrays import Array
 from handeye.calibration.arm.kernels import TWIST, SerialArm, joint_at
 from handeye.calibration.placement import Placement
-from handeye.geometry import make_pose
+from handeye.geometry import invert, make_pose
 from handeye.robots.stages import Stages
 
 
@@ -32,7 +32,8 @@ def corrected(kernel: SerialArm, stages: Stages, x: Array) -> CorrectedArm:
     """The arm with constants of unknowns x (n_x,); stages are the nominal ones.
 
     A twist is stated in the upright frame of its joint, turned by A from the frame of the URDF
-    file: there it is A E(xi) A^T.
+    file: there it is A E(xi) A^T. Where the chain starts upwards in the tree, what is before the
+    first joint is no joint's placement: there the sensor is mounted elsewhere on its link.
     """
     n = len(kernel.slides)
     ways, turns = stages.placements.copy(), stages.turns
@@ -46,11 +47,17 @@ def corrected(kernel: SerialArm, stages: Stages, x: Array) -> CorrectedArm:
             compliances[j] = x[at + TWIST + 1]
     marker = np.zeros(TWIST)
     marker[: kernel.n_marker] = x[TWIST : TWIST + kernel.n_marker]
-    placement = Placement(
-        kernel.T_sensor_base @ _shifted(x[:3], x[3:TWIST]),
-        _shifted(marker[:3], marker[3:]) @ kernel.T_flange_marker,
+    T_sensor_base = kernel.T_sensor_base @ _shifted(x[:3], x[3:TWIST])
+    if stages.upwards:
+        T_sensor_base = T_sensor_base @ ways[0] @ invert(stages.placements[0])
+        ways[0] = stages.placements[0]
+    T_flange_marker = _shifted(marker[:3], marker[3:]) @ kernel.T_flange_marker
+    return CorrectedArm(
+        Stages(ways, stages.axes, stages.slides, stages.upwards),
+        Placement(T_sensor_base, T_flange_marker),
+        scales,
+        compliances,
     )
-    return CorrectedArm(Stages(ways, stages.axes, stages.slides), placement, scales, compliances)
 
 
 def _shifted(shift: Array, turn: Array) -> Array:

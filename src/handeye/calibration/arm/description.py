@@ -9,9 +9,6 @@ from handeye.geometry import wxyz_from_matrix
 from handeye.observations import PointObservation, PointTarget
 from handeye.robots.urdf import UrdfArm
 
-_FREE_TRAVEL = 1.0
-"""Of a sliding joint without limits [m]."""
-
 
 def describe(
     arm: UrdfArm,
@@ -20,27 +17,41 @@ def describe(
     *,
     turn_std: float | None,
     compliant: bool,
+    ends: Array | None = None,
 ) -> SerialArm:
     """An arm between a placed sensor and a placed marker, with curves of `terms` (T, 3).
 
     turn_std: standard deviation of measured orientations [rad]; None where none are measured. The
-    first harmonic of a sliding joint is half a wave over its travel.
+    first harmonic of a sliding joint is half a wave over its travel. ends (2, n): where curves are
+    held; nowhere by default.
     """
-    stages = arm.stages().upright()
-    travel = np.where(np.isfinite(arm.upper - arm.lower), arm.upper - arm.lower, _FREE_TRAVEL)
+    stages, readings = arm.stages().upright(), arm.readings
+    low, high = [[-np.inf], [np.inf]] * np.ones(len(stages.slides)) if ends is None else ends
     return SerialArm(
         placements=stages.placements,
         slides=stages.slides,
-        rates=np.where(stages.slides, np.pi / travel, 1.0),
+        n_readings=len(readings.names),
+        of=readings.of,
+        gains=readings.gains,
+        offsets=readings.offsets,
+        rates=np.where(stages.slides, np.pi / arm.travel, 1.0),
         T_sensor_base=np.ascontiguousarray(placement.T_sensor_base),
         T_flange_marker=np.ascontiguousarray(placement.T_flange_marker),
         n_marker=3 if turn_std is None else 6,
         compliant=compliant,
         oriented=turn_std is not None,
         terms=np.ascontiguousarray(terms, np.int64).reshape(-1, 3),
+        low=low.copy(),
+        high=high.copy(),
         turn_std=0.0 if turn_std is None else turn_std,
         lever=arm.reach / 3.0,
     )
+
+
+def ends_of(kernel: SerialArm, rows: Array) -> Array:
+    """Least and largest place (2, n) of every joint in N rows (N, w)."""
+    stood = kernel.gains * rows[:, kernel.of] + kernel.offsets
+    return np.stack([stood.min(axis=0), stood.max(axis=0)])
 
 
 def seen_rows(kernel: SerialArm, arm: UrdfArm, observations: PointObservation) -> Array:
@@ -81,4 +92,5 @@ def expected_rows(kernel: SerialArm, arm: UrdfArm, x: Array, joints: Array) -> A
 def _joints(kernel: SerialArm, arm: UrdfArm, joints: Array) -> list[Array]:
     if not kernel.compliant:
         return [joints]
-    return [joints, arm.loads(joints.reshape(-1, joints.shape[-1])).reshape(joints.shape)]
+    loads = arm.loads(joints.reshape(-1, joints.shape[-1]))
+    return [joints, loads.reshape(*joints.shape[:-1], loads.shape[1])]

@@ -142,6 +142,8 @@ class ArmEstimator:
         if seen.shape[1:] != (self.robot.chain.n_seen,) or x.shape != self._acting.x.shape:
             raise InvalidInput(f"{seen.shape} and {x.shape} are not what this arm learns from")
         self._seen = [seen]
+        if len(seen):
+            self.robot.hold_curves(seen)
         self._posterior = None
         self._acting = self._with(x)
         self._fitted = len(seen)
@@ -159,6 +161,7 @@ class ArmEstimator:
         n = self.n_observations
         if n in {0, self._fitted} and (n == 0 or self._posterior is not None):
             return
+        self.robot.hold_curves(self.seen)
         system = LogSystem(self.robot.kernel, self.robot.chain.tolerance, self.seen)
         self._posterior = solve(system)
         self._acting = self._with(self._posterior.x)

@@ -1,12 +1,16 @@
-"""Which unknowns of an arm share the width of their prior."""
+"""Which unknowns of an arm share the width of their prior, and which can be seen at all."""
 
 import numpy as np
 
-from handeye.arrays import Integers
-from handeye.calibration.arm.kernels import SerialArm
+from handeye.arrays import Booleans, Integers
+from handeye.calibration.arm.kernels import SerialArm, joint_width
 
 # Harmonics up to each of these share it.
 _BANDS = (1, 2, 4, 8, 16, 24, 32, 48, 64, 96, 128)
+
+# Numbers that were measured for each unknown of a curve, at least; and of so many harmonics of a
+# joint one is offered across its axis, in each of five components.
+_NUMBERS, _FOR_OTHERS = 3, 10
 
 
 def prior_groups(kernel: SerialArm) -> Integers:
@@ -27,3 +31,21 @@ def prior_groups(kernel: SerialArm) -> Integers:
         keys += [(joint, turns, along == 2, band)] * 2
     numbers = {key: i for i, key in enumerate(dict.fromkeys(keys))}
     return np.array([numbers[key] for key in keys], np.int64)
+
+
+def shown_by(kernel: SerialArm, numbers: int) -> Booleans:
+    """Unknowns of an arm, base and marker left out, that so many measured numbers can show.
+
+    Constants, and as many harmonics as there are numbers for: finer waves would run through any
+    few. Those along or about a joint's own axis come first.
+    """
+    joints = max(len(kernel.slides), 1)
+    waves = numbers // (2 * _NUMBERS * joints)
+    others = waves // _FOR_OTHERS
+    joint, component, harmonic = kernel.terms.T
+    along = component == np.where(kernel.slides[joint], 2, 5)
+    # What the components across leave unused is for the one along.
+    used = min(others, int(harmonic[~along].max(initial=0)))
+    most = np.where(along, waves - 5 * used, others)
+    constants = len(kernel.slides) * joint_width(kernel)
+    return np.concatenate([np.ones(constants, np.bool_), np.repeat(harmonic <= most, 2)])

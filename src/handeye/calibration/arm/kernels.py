@@ -4,7 +4,9 @@
                             prod_j [ P_j E(xi_j + c_j(q_j)) J_j(q_j + s_j q_j + k_j g_j) ]
                             P_n E(m) M
 
-with E(t, r) the pose that shifts by t and turns by exp([r]x). B and M are the placement of the base
+where joint j stands at q_j = gain_j r[of_j] + offset_j by the readings r (robots.readings),
+
+E(t, r) is the pose that shifts by t and turns by exp([r]x). B and M are the placement of the base
 to the sensor and of the marker to the flange, P_j and J_j the arm's constants and joints with every
 axis along z (robots.stages). Unknowns x, all nominally 0, in this order:
 
@@ -16,8 +18,8 @@ axis along z (robots.stages). Unknowns x, all nominally 0, in this order:
         k                      compliance [rad/Nm] (or [m/N]), if there is any; g_j is the load
     two for each term          weights of cos and sin of h phi_j in one component of c_j
 
-where phi_j is the reading of joint j times its rate. An observation is a row: joints (n,), loads
-(n,) if there is compliance, position (3,) [m], its standard deviations (3,), and, where it is seen,
+where phi_j is q_j times its rate. An observation is a row: readings (m,), loads (n,) if there is
+compliance, position (3,) [m], its standard deviations (3,), and, where it is seen,
 orientation (4,), a unit quaternion wxyz.
 """
 
@@ -27,7 +29,7 @@ import numpy as np
 
 from handeye._compiled import compiled
 from handeye.arrays import Array, Booleans, Integers
-from handeye.calibration.arm.rotations import turned
+from handeye.calibration.arm.motions import carry, compose, move_joint, shift_and_turn
 
 TWIST = 6
 """Unknowns of a placement."""
@@ -36,15 +38,21 @@ TWIST = 6
 class SerialArm(NamedTuple):
     """What the kernels know of an arm with n joints.
 
-    placements (n + 1, 4, 4), slides (n,): the stages, upright; rates (n,): of the curves [rad] per
-    reading; T_sensor_base, T_flange_marker (4, 4); n_marker 6 or 3; compliant, oriented: whether
-    there are loads, and orientations, in a row; terms (T, 3): joint, component 0 to 5, harmonic of
-    each term; turn_std: standard deviation of measured orientations [rad]; lever: what the model
-    leaves unexplained of a position, over this length [m], it leaves of a turn.
+    placements (n + 1, 4, 4), slides (n,): the stages, upright; n_readings m; of, gains, offsets
+    (n,): which reading tells of a joint, and where it then stands; rates (n,): phase of the curves
+    [rad] per rad or m; T_sensor_base, T_flange_marker (4, 4); n_marker 6 or 3; compliant, oriented:
+    whether there are loads, and orientations, in a row; terms (T, 3): joint, component 0 to 5,
+    harmonic of each term; low, high (n,): where joints were seen, beyond which curves keep the
+    value of the edge; turn_std: standard deviation of measured orientations [rad]; lever: what the
+    model leaves unexplained of a position, over this length [m], it leaves of a turn.
     """
 
     placements: Array
     slides: Booleans
+    n_readings: int
+    of: Integers
+    gains: Array
+    offsets: Array
     rates: Array
     T_sensor_base: Array
     T_flange_marker: Array
@@ -52,6 +60,8 @@ class SerialArm(NamedTuple):
     compliant: bool
     oriented: bool
     terms: Integers
+    low: Array
+    high: Array
     turn_std: float
     lever: float
 
@@ -75,66 +85,19 @@ def n_unknowns(kernel: SerialArm) -> int:
 
 
 @compiled
+def stands_at(kernel: SerialArm, q: Array, j: int) -> float:
+    """Where joint j is [rad] or [m] as the readings q (m,) have it."""
+    return kernel.gains[j] * q[kernel.of[j]] + kernel.offsets[j]
+
+
+@compiled
 def waves(kernel: SerialArm, q: Array, out: Array) -> None:
-    """out (T, 2), overwritten: cos and sin of each term at joints q (n,)."""
+    """out (T, 2), overwritten: cos and sin of each term at readings q (m,)."""
     for i in range(len(kernel.terms)):
         j, h = kernel.terms[i, 0], kernel.terms[i, 2]
-        angle = h * kernel.rates[j] * q[j]
+        held = min(max(stands_at(kernel, q, j), kernel.low[j]), kernel.high[j])
+        angle = h * kernel.rates[j] * held
         out[i, 0], out[i, 1] = np.cos(angle), np.sin(angle)
-
-
-@compiled
-def compose(T: Array, D: Array) -> None:
-    """T (3, 4) becomes T D, with D (3, 4) or (4, 4)."""
-    for i in range(3):
-        a, b, c = T[i, 0], T[i, 1], T[i, 2]
-        for j in range(4):
-            T[i, j] = a * D[0, j] + b * D[1, j] + c * D[2, j] + (T[i, 3] if j == 3 else 0.0)
-
-
-@compiled
-def shift_and_turn(T: Array, e: Array, ways: Array) -> None:
-    """T (3, 4) becomes T E(e) with e (6,); ways (6, 6), overwritten, by each component of e.
-
-    Rows 0 to 2: how the origin of what follows shifts with T's frame, 3 to 5: turn [rad], both in
-    the axes outside; the turn is about the new origin of T.
-    """
-    R, L = np.empty((3, 3)), np.empty((3, 3))
-    turned(e[3:], R, L)
-    D = np.empty((3, 4))
-    for i in range(3):
-        D[i, 3] = e[i]
-        for j in range(3):
-            D[i, j] = R[i, j]
-            ways[i, j], ways[3 + i, j], ways[i, 3 + j] = T[i, j], 0.0, 0.0
-            ways[3 + i, 3 + j] = T[i, 0] * L[0, j] + T[i, 1] * L[1, j] + T[i, 2] * L[2, j]
-    compose(T, D)
-
-
-@compiled
-def move_joint(T: Array, amount: float, slides: bool) -> None:
-    """T (3, 4) becomes T J: a turn about z by amount [rad], or a shift along it [m]."""
-    if slides:
-        for i in range(3):
-            T[i, 3] += amount * T[i, 2]
-        return
-    c, s = np.cos(amount), np.sin(amount)
-    for i in range(3):
-        x, y = T[i, 0], T[i, 1]
-        T[i, 0] = c * x + s * y
-        T[i, 1] = c * y - s * x
-
-
-@compiled
-def carry(ways: Array, origin: Array, T: Array, out: Array) -> None:
-    """out (6, k), overwritten: ways (6, k) about `origin` (3,), as shift and turn of T (3, 4)."""
-    x, y, z = T[0, 3] - origin[0], T[1, 3] - origin[1], T[2, 3] - origin[2]
-    for k in range(ways.shape[1]):
-        a, b, c = ways[3, k], ways[4, k], ways[5, k]
-        out[0, k] = ways[0, k] + b * z - c * y
-        out[1, k] = ways[1, k] + c * x - a * z
-        out[2, k] = ways[2, k] + a * y - b * x
-        out[3, k], out[4, k], out[5, k] = a, b, c
 
 
 @compiled
@@ -143,7 +106,7 @@ def chain(
 ) -> None:
     """The marker's pose T (3, 4), and what is needed for its derivatives; all overwritten.
 
-    wave (T, 2): `waves` at the joints of seen (w,). ways (n + 2, 6, 7), origins (n + 2, 3): base,
+    wave (T, 2): `waves` at the readings of seen (w,). ways (n + 2, 6, 7), origins (n + 2, 3): base,
     joints and marker; each the six components of its twist and the joint's motion about its origin.
     """
     n = len(kernel.slides)
@@ -177,10 +140,11 @@ def chain(
 
 @compiled
 def actual(kernel: SerialArm, x: Array, seen: Array, j: int) -> float:
-    """Where joint j is [rad] or [m]: its reading, scaled, and what the load bends."""
+    """Where joint j is [rad] or [m]: as its reading has it, scaled, and what the load bends."""
     at = joint_at(kernel, j) + TWIST
-    q = seen[j] + x[at] * seen[j]
-    return q + x[at + 1] * seen[len(kernel.slides) + j] if kernel.compliant else q
+    read = stands_at(kernel, seen, j)
+    q = read + x[at] * read
+    return q + x[at + 1] * seen[kernel.n_readings + j] if kernel.compliant else q
 
 
 @compiled
@@ -215,9 +179,10 @@ def pose_slopes(kernel: SerialArm, x: Array, seen: Array, T: Array, slopes: Arra
             at = joint_at(kernel, j)
             for c in range(TWIST):
                 slopes[i, at + c] = moved[1 + j, i, c]
-            slopes[i, at + TWIST] = seen[j] * moved[1 + j, i, TWIST]
+            slopes[i, at + TWIST] = stands_at(kernel, seen, j) * moved[1 + j, i, TWIST]
             if kernel.compliant:
-                slopes[i, at + TWIST + 1] = seen[n + j] * moved[1 + j, i, TWIST]
+                load = seen[kernel.n_readings + j]
+                slopes[i, at + TWIST + 1] = load * moved[1 + j, i, TWIST]
         at = joint_at(kernel, n)
         for k in range(len(kernel.terms)):
             way = moved[1 + kernel.terms[k, 0], i, kernel.terms[k, 1]]

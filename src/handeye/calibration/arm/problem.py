@@ -6,11 +6,11 @@ import numpy as np
 
 from handeye.arrays import Array
 from handeye.calibration.arm.description import describe
-from handeye.calibration.arm.evidence import Rows
-from handeye.calibration.arm.groups import prior_groups
+from handeye.calibration.arm.groups import prior_groups, shown_by
 from handeye.calibration.arm.kernels import TWIST, pose_many, pose_slopes_many
 from handeye.calibration.arm.measurement import Block, Measurement
-from handeye.calibration.arm.sheet import ArmSheet, CurveTerms
+from handeye.calibration.arm.sheet import ArmSheet, ChosenTerms, CurveTerms
+from handeye.calibration.arm.system import Rows
 from handeye.calibration.placement import Placement
 from handeye.errors import InvalidInput
 from handeye.robots.urdf import UrdfArm
@@ -36,7 +36,11 @@ class ArmProblem:
     """
 
     def __init__(
-        self, arm: UrdfArm, measurements: Sequence[Measurement], sheet: ArmSheet, terms: CurveTerms
+        self,
+        arm: UrdfArm,
+        measurements: Sequence[Measurement],
+        sheet: ArmSheet,
+        terms: CurveTerms | ChosenTerms,
     ) -> None:
         self.arm, self.measurements = arm, tuple(measurements)
         self.n_rows = sum(len(m.joints) for m in self.measurements)
@@ -63,6 +67,9 @@ class ArmProblem:
         self.tolerance = np.concatenate([of_arm, *(b.tolerance for b in self.blocks.values())])
         self.groups = np.full(at, -1, np.int64)
         self.groups[: self.n_arm] = prior_groups(self.kernel)
+        self.shown = np.ones(at, np.bool_)
+        numbers = sum(m.std.size for m in self.measurements)
+        self.shown[: self.n_arm] = shown_by(self.kernel, numbers)
         self.channels = tuple(dict.fromkeys(c for m in self.measurements for c in m.channels))
         self.n_channels = len(self.channels)
         self._seen = [self._rows_of(m.joints) for m in self.measurements]

@@ -12,7 +12,7 @@ from handeye.calibration.engine.chain import reach, residuals
 @compiled
 def measured_at(kernel: SerialArm) -> int:
     """Where the measured position begins in a row."""
-    return len(kernel.slides) * (2 if kernel.compliant else 1)
+    return kernel.n_readings + (len(kernel.slides) if kernel.compliant else 0)
 
 
 @compiled

@@ -8,7 +8,13 @@ from handeye.arrays import Array, shaped
 from handeye.calibration.arm.acting import ARRIVED, Bounds, predicted, predicted_many, seek_many
 from handeye.calibration.arm.chain import arm_chain
 from handeye.calibration.arm.corrected import CorrectedArm, corrected
-from handeye.calibration.arm.description import describe, expected_rows, seen_rows, target_rows
+from handeye.calibration.arm.description import (
+    describe,
+    ends_of,
+    expected_rows,
+    seen_rows,
+    target_rows,
+)
 from handeye.calibration.arm.residuals import measured_at
 from handeye.calibration.arm.sheet import ArmSheet
 from handeye.calibration.engine.robot import Acting, Judged
@@ -46,16 +52,21 @@ class ArmRobot:
         stages = self.arm.stages()
         kernel = describe(
             self.arm, model.placement, sheet.curves.table(stages.slides),
-            turn_std=model.turn_std, compliant=sheet.compliance > 0.0,
+            turn_std=model.turn_std, compliant=sheet.compliance > 0.0, ends=sheet.curves.ends(),
         )  # fmt: skip
         self.kernel = kernel
-        self.chain = arm_chain(kernel, model.arm.joint_names, sheet)
+        self.chain = arm_chain(kernel, self.arm.stage_names, sheet)
         self.doubt = (max(sheet.unexplained, model.noise), sheet.resolution)
         self.settings = SETTINGS
         self.space = model.space
         self.n_outputs = 3
         self._stages = stages
         self._n = len(model.arm.joint_names)
+
+    def hold_curves(self, rows: Array) -> None:
+        """From now on, beyond where joints stood in rows (N, w), curves keep the edge's value."""
+        low, high = ends_of(self.kernel, rows)
+        self.kernel = self.kernel._replace(low=low, high=high)
 
     def seen_rows(self, observations: PointObservation) -> Array:
         """One observation (w,) or N (N, w)."""
@@ -75,7 +86,7 @@ class ArmRobot:
         posed = rows.copy()
         posed[:, : self._n] = joints
         if self.kernel.compliant:
-            posed[:, self._n : 2 * self._n] = self.arm.loads(joints)
+            posed[:, self._n : measured_at(self.kernel)] = self.arm.loads(joints)
         return posed
 
     def judge(self, x: Array, row: Array, envelope: float) -> Judged:
@@ -85,13 +96,15 @@ class ArmRobot:
         joints = row[: self._n]
         return Judged(self._measured(row) - places, np.stack([joints, joints]))
 
-    def lesson(self, row: Array, judged: Judged) -> tuple[Array, Array]:
-        """Joints, and the shift of the prediction that was wanting."""
-        return row[: self._n], judged.misses[1]
+    def inputs(self, row: Array, judged: Judged) -> Array:  # noqa: ARG002
+        """Joints."""
+        return row[: self._n]
 
-    def helped(self, row: Array, judged: Judged, extra: Array) -> Array:  # noqa: ARG002
-        """The miss of the learned prediction with `extra`."""
-        return judged.misses[1] - extra
+    def explained(self, row: Array, shift: Array) -> Array:
+        """The row with another measured position."""
+        explained = row.copy()
+        self._measured(explained)[:] -= shift
+        return explained
 
     def errors(self, acting: Acting, rows: Array) -> Array:
         """Measured minus predicted positions (N, 3)."""
@@ -109,7 +122,7 @@ class ArmRobot:
         goals, missed = np.ascontiguousarray(self._measured(rows)), np.empty(len(rows))
         posed = rows.copy()
         arm = self.arm
-        bounds = Bounds(arm.lower, arm.upper, acting.envelope, arm.reach)
+        bounds = Bounds(arm.lower, arm.upper, arm.held, acting.envelope, arm.reach)
         # Loads and network follow the joints, which they hardly change.
         for _ in range(_ROUNDS):
             before = posed[:, : self._n].copy()

@@ -40,6 +40,37 @@ class CurveTerms:
             np.int64,
         ).reshape(-1, 3)
 
+    def ends(self) -> None:
+        """Curves that are being learned are held nowhere."""
+
+
+@dataclass(frozen=True)
+class ChosenTerms:
+    """Those terms of error curves that a fit has found, each a joint, a component, a harmonic.
+
+    Beyond `low` and `high`, where the joints were seen, curves keep the value of the edge: what a
+    series says out there is no more than how it happened to end. Empty for no such limits.
+    """
+
+    terms: tuple[tuple[int, int, int], ...]
+    low: tuple[float, ...] = ()
+    high: tuple[float, ...] = ()
+
+    @classmethod
+    def of(cls, table: Integers, ends: Array | None = None) -> Self:
+        """Rows (T, 3) as `CurveTerms.table` has them; ends (2, n) of joints."""
+        rows: list[list[int]] = table.tolist()
+        low, high = ((), ()) if ends is None else (tuple(end) for end in ends.tolist())
+        return cls(tuple((j, c, h) for j, c, h in rows), low, high)
+
+    def ends(self) -> Array | None:
+        """(2, n), if there are any."""
+        return np.array([self.low, self.high]) if self.low else None
+
+    def table(self, slides: Booleans) -> Integers:  # noqa: ARG002
+        """Rows (T, 3): joint, component, harmonic."""
+        return np.array(self.terms, np.int64).reshape(-1, 3)
+
 
 @dataclass(frozen=True)
 class ArmSheet:
@@ -59,7 +90,7 @@ class ArmSheet:
                                third of the arm's reach. Adjusted by what is seen, never below
                                `resolution`
     resolution                 the least of it [m]
-    curves                     how many harmonics the error curves have
+    curves                     how many harmonics the error curves have, or which
 
     The defaults are those of ordinary industrial arms and cobots.
 
@@ -82,7 +113,7 @@ class ArmSheet:
     own_fall: float = 1.0
     unexplained: float = 1e-4
     resolution: float = 1e-5
-    curves: CurveTerms = CurveTerms()
+    curves: CurveTerms | ChosenTerms = CurveTerms()
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -98,7 +129,11 @@ class ArmSheet:
     def restored(cls, parts: Mapping[str, Any]) -> Self:
         """The sheet of `dataclasses.asdict`."""
         numbers = {name: value for name, value in parts.items() if name != "curves"}
-        return cls(curves=CurveTerms(**parts["curves"]), **numbers)
+        curves = dict(parts["curves"])
+        if "terms" in curves:
+            ends = np.array([curves["low"], curves["high"]]) if curves.get("low") else None
+            return cls(curves=ChosenTerms.of(np.array(curves["terms"]), ends), **numbers)
+        return cls(curves=CurveTerms(**curves), **numbers)
 
     def tolerances(self, kernel: SerialArm) -> Array:
         """Standard deviations (n_x,) of the priors of an arm's unknowns."""

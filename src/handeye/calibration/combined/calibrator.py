@@ -1,5 +1,6 @@
 """The calibrator to use by default: the whole chain, with a learned function for each stage."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -52,16 +53,34 @@ class Combined:
         )
         self.comparison = Comparison(self.settings.recent, self.settings.chance)
         self.falling_back = False
+        self.known = 0
+        self.past: tuple[Event, ...] = ()
+
+    def begin(self, x: Array, root: Array, doubt: float, n: int) -> None:
+        """Start with what n observations told, as the prior of what comes.
+
+        x (n_x,) the estimate; root (n_x, n_x) upper triangular, root^T root the information in
+        tolerances; doubt: what the model leaves unexplained.
+        """
+        engine = self.engine
+        engine.x[:] = x
+        scaled = x / engine.chain.tolerance
+        engine.bank.roots[:] = np.column_stack([root, root @ scaled])
+        engine.bank.olds[:] = engine.bank.roots
+        engine.bank.d[:] = scaled
+        engine.doubt = max(doubt, self.robot.doubt[1])
+        self.known = n
 
     @property
     def n_observations(self) -> int:
         """So far, believed or not."""
-        return self.engine.n_observations
+        return self.known + self.engine.n_observations
 
     @property
     def events(self) -> tuple[Event, ...]:
         """What the comparator noticed, oldest first; the latest thousand."""
-        return tuple(self.engine.events)
+        since = (replace(e, observation=e.observation + self.known) for e in self.engine.events)
+        return (*self.past, *since)
 
     @property
     def parameters(self) -> Array:
@@ -86,6 +105,10 @@ class Combined:
 
     def health(self) -> str:
         """The state of the robot in words."""
+        if self.known and not self.engine.n_observations:
+            back = "; commands are nominal: what was learned was worse" if self.falling_back else ""
+            left = f"about {self.engine.doubt:.2g} m is left"
+            return f"{self.known} observations, all of them fitted at once; {left}{back}"
         return health(self.engine, self.falling_back, self.leftover.proved)
 
     def observe(self, observation: Observation) -> Feedback:
@@ -155,17 +178,15 @@ class Combined:
         engine, settings, leftover = self.engine, self.settings, self.leftover
         settled = self.n_observations >= 2 * settings.window
         judged = self.robot.judge(engine.x, seen, settings.envelope)
-        corrected, allocated = judged.misses[1], False
-        if leftover.proved:
-            corrected = self.robot.errors(self._corrected(), seen[np.newaxis])[0]
-        error = judged.misses[0] if self.falling_back else corrected
-        nominal, learned = np.linalg.norm(judged.misses, axis=1)
-        self._compare(float(np.linalg.norm(corrected)), float(nominal))
-        if engine.learn(seen) and settled and leftover.network and engine.leaves_something:
-            extra, allocated = leftover.learn(*self.robot.lesson(seen, judged))
-            helped = float(np.linalg.norm(self.robot.helped(seen, judged, extra)))
-            proved = leftover.proved
-            leftover.judge(float(learned), helped)
+        inputs, left = self.robot.inputs(seen, judged), judged.misses[1]
+        shift = leftover.used(inputs[np.newaxis])[0]
+        error = judged.misses[0] if self.falling_back else left - shift
+        self._compare(*(float(np.linalg.norm(miss)) for miss in (left - shift, judged.misses[0])))
+        # What the network explains must not be learned a second time, as a drift of the model.
+        explained = self.robot.explained(seen, shift) if leftover.proved else seen
+        proved, allocated = leftover.proved, False
+        if engine.learn(explained) and settled and (proved or engine.leaves_something):
+            allocated = leftover.learn(inputs, left)
             if leftover.proved != proved:
                 self._tell("network", "no longer used" if proved else "used: it has proved itself")
         return Feedback(error, np.bool_(allocated))  # pyright: ignore[reportArgumentType]
@@ -181,7 +202,7 @@ class Combined:
             self._tell("fallback", "nominal commands until corrections are better again")
 
     def _tell(self, kind: Kind, done: str) -> None:
-        self.engine.events.append(Event(self.n_observations, kind, "", done))
+        self.engine.events.append(Event(self.engine.n_observations, kind, "", done))
 
     def _acting(self) -> Acting:
         """Nominal while falling back."""

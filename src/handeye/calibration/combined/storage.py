@@ -15,7 +15,7 @@ from handeye.calibration.engine.events import Event
 from handeye.calibration.engine.filter import Bank
 from handeye.calibration.engine.settings import Hypothesis, Settings
 from handeye.calibration.models import PlanarModel
-from handeye.networks.storage import from_arrays, to_arrays
+from handeye.networks.recursive import RecursiveNetwork
 
 _NETWORK = "network."
 _BANK = "bank."
@@ -38,12 +38,14 @@ def combined_to_arrays(combined: Combined) -> tuple[dict[str, Array], dict[str, 
         "leader": engine.leader,
         "drifting": engine.drifting,
         "events": [asdict(event) for event in engine.events],
+        "known": combined.known,
+        "past": [asdict(event) for event in combined.past],
         "falling_back": combined.falling_back,
         "proved": leftover.proved,
         "network": None,
     }
     if leftover.network is not None:
-        network, settings["network"] = to_arrays(leftover.network)
+        network, settings["network"] = leftover.network.parts()
         arrays |= {_NETWORK + name: array for name, array in network.items()}
     return {name: finite(array, name) for name, array in arrays.items()}, settings
 
@@ -70,11 +72,13 @@ def combined_from_arrays(
     engine.events = deque((Event(**e) for e in settings["events"]), engine.events.maxlen)
     for name, comparison in (("guard", combined.comparison), ("proof", leftover.comparison)):
         comparison.restore({key: arrays[f"{name}.{key}"] for key in ("scores", "n")})
+    combined.known = int(settings.get("known", 0))
+    combined.past = tuple(Event(**e) for e in settings.get("past", []))
     combined.falling_back = bool(settings["falling_back"])
     leftover.proved = bool(settings["proved"])
     if leftover.network is not None:
         inside = {n.removeprefix(_NETWORK): a for n, a in arrays.items() if n.startswith(_NETWORK)}
-        leftover.network = from_arrays(inside, settings["network"])
+        leftover.network = RecursiveNetwork.of_parts(inside, settings["network"])
     return combined
 
 

@@ -1,7 +1,5 @@
 """Albus's CMAC in the place of the resource-allocating network."""
 
-from typing import Any, cast
-
 from handeye.arrays import scalar
 from handeye.calibration.calibrators import NetworkCorrection
 from handeye.calibration.models import PlanarModel
@@ -39,5 +37,4 @@ def albus_correction(
         rate=rate,
         displacements=range(1, 2 * space.n_inputs, 2),
     )
-    # A correction needs of its network only what every learner has: its size and the two verbs.
-    return NetworkCorrection(model, cast("Any", cmac))
+    return NetworkCorrection(model, cmac)

@@ -39,6 +39,7 @@ class ParameterEstimator:
     """
 
     def __init__(self, model: PlanarModel, method: Method | None = None) -> None:
+        # Not every caller checks types.
         if not isinstance(model, PlanarModel):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise InvalidInput(
                 f"a ParameterEstimator needs a PlanarModel, whose parameters have names; for a "

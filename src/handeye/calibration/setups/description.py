@@ -1,8 +1,8 @@
 """A YAML file that says what was measured of an arm, by what, and what is known beforehand.
 
     robot: ur10                         # a URDF file or a robot known by name
-    tip: tool0                          # optional: link of the flange
-    measurements:                       # one or more; see `description_kinds.KINDS`
+    tip: tool0                          # optional: link of the flange; eye: link of the base
+    measurements:                       # one or more; see `setups.kinds.KINDS`
       - kind: points
         file: tracker.csv               # columns <joint>_rad, x_m, y_m, z_m
         sensor: tracker
@@ -14,14 +14,16 @@
       reflector: {at: [0, 0, 0.1], within: 0.001}
       corners: {grid: [9, 6, 0.03]}
     cameras:                            # needed for pixels
-      eye: {matrix: [fx, fy, cx, cy], distortion: [k1, k2, p1, p2, k3], within: 1}
+      eye: {matrix: [fx, fy, cx, cy], distortion: [k1, k2, p1, p2, k3], within: 1,
+            size: [1920, 1200]}
+      wrist: {camera_info: wrist.yaml}  # the same numbers as ROS keeps them
     arm: {shift: 0.001, compliance: 0}  # optional: fields of `sheet.ArmSheet`
     curves: {own: 64, others: 6}        # optional: fields of `sheet.CurveTerms`
 
 Lengths are in metres, angles in radians. What is not stated is found from nothing.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
@@ -29,17 +31,19 @@ from typing import Any
 import numpy as np
 
 from handeye.arrays import Array
-from handeye.calibration.arm.description_kinds import KINDS, made
-from handeye.calibration.arm.description_tables import Given
 from handeye.calibration.arm.estimator import FINE
-from handeye.calibration.arm.measurements import Frame, Instrument, Numbers, Points, agreeing, lens
+from handeye.calibration.arm.measurements import Frame, Instrument, Points, agreeing
+from handeye.calibration.arm.measurements.unknowns import Unknown
 from handeye.calibration.arm.sheet import ArmSheet, CurveTerms
+from handeye.calibration.setups.cameras import read_cameras
+from handeye.calibration.setups.kinds import KINDS, made
+from handeye.calibration.setups.tables import Given, Source
 from handeye.errors import InvalidInput
 from handeye.geometry import make_pose, matrix_from_wxyz
 from handeye.io.yaml_entries import Entry, read_yaml
 from handeye.robots.urdf import UrdfArm, load_arm
 
-_PARTS = ("robot", "tip", "measurements", "frames", "points", "cameras", "arm", "curves")
+_PARTS = ("robot", "tip", "eye", "measurements", "frames", "points", "cameras", "arm", "curves")
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,13 +51,21 @@ class Description:
     """What a file describes.
 
     arm           nominal kinematics
-    measurements  with everything placed by its start
+    measurements  with what is stated where it is stated, and all else placed by its start
+    placed        the same, with what is stated moved to where it fits an arm without errors best
     sheet         how far the arm may be from nominal, and how fine its error curves may be
+    sources       of each measurement, the rows of its table
+    stated        frames, points and cameras as the file has them, by name
+    sizes         width and height of cameras' pictures [px], where they are stated
     """
 
     arm: UrdfArm
     measurements: tuple[Instrument, ...]
+    placed: tuple[Instrument, ...]
     sheet: ArmSheet
+    sources: tuple[Source, ...]
+    stated: Mapping[str, Unknown]
+    sizes: Mapping[str, tuple[int, int]]
 
 
 def load_description(
@@ -73,30 +85,34 @@ def load_description(
     file = Path(path)
     parts = read_yaml(file).table(_PARTS, ("measurements",))
     arm = arm or _robot(file, parts)
-    given = Given(
-        arm, file.parent, skip_bad,
-        frames={name: _frame(name, entry) for name, entry in _named(parts, "frames")},
-        points={name: _points(name, entry) for name, entry in _named(parts, "points")},
-        cameras={name: _camera(name, entry) for name, entry in _named(parts, "cameras")},
-    )  # fmt: skip
+    frames = {name: _frame(name, entry) for name, entry in _named(parts, "frames")}
+    points = {name: _points(name, entry) for name, entry in _named(parts, "points")}
+    cameras, sizes = read_cameras(_named(parts, "cameras"), file.parent)
+    given = Given(arm, file.parent, skip_bad, frames, points, cameras, sizes)
     entries = parts["measurements"].items()
     if not entries:
         raise parts["measurements"].error(f"is empty: list one or more of {', '.join(KINDS)}")
-    placed = [made(entry, given) for entry in entries]
+    both = [made(entry, given) for entry in entries]
+    placed, sources = [one for one, _ in both], tuple(source for _, source in both)
     with parts["measurements"].blamed():
         together = agreeing(placed, [arm.poses(one.joints) for one in placed])
-    _all_used(parts, together)
-    return Description(arm, tuple(together), _sheet(parts))
+    stated: dict[str, Unknown] = {**frames, **points, **cameras}
+    _all_used(parts, together, stated)
+    begun = tuple(
+        one.given({u.name: stated[u.name] for u in one.unknowns if u.name in stated})
+        for one in together
+    )
+    return Description(arm, begun, tuple(together), _sheet(parts), sources, stated, sizes)
 
 
 def _robot(file: Path, parts: dict[str, Entry]) -> UrdfArm:
     if "robot" not in parts:
         raise InvalidInput(f"{file}: says no `robot:`; add one, or give --robot (in Python: arm=)")
     spec = parts["robot"].text()
-    tip = parts["tip"].text() if "tip" in parts else None
+    tip, eye = (parts[key].text() if key in parts else None for key in ("tip", "eye"))
     beside = file.parent / spec
     with parts["robot"].blamed():
-        return load_arm(str(beside) if beside.is_file() else spec, tip)
+        return load_arm(str(beside) if beside.is_file() else spec, tip, eye)
 
 
 def _named(parts: dict[str, Entry], key: str) -> list[tuple[str, Entry]]:
@@ -132,14 +148,6 @@ def _grid(entry: Entry) -> Array:
     return np.array(places)
 
 
-def _camera(name: str, entry: Entry) -> Numbers:
-    keys = entry.table(("matrix", "distortion", "within"), ("matrix",))
-    distortion = keys["distortion"].numbers().tolist() if "distortion" in keys else ()
-    within = keys["within"].numbers() if "within" in keys else 0.0
-    with entry.blamed():
-        return lens(name, keys["matrix"].numbers().tolist(), distortion, within)
-
-
 def _sheet(parts: dict[str, Entry]) -> ArmSheet:
     numbers = [field.name for field in fields(ArmSheet) if field.name != "curves"]
     plain: dict[str, Any] = {}
@@ -154,9 +162,12 @@ def _sheet(parts: dict[str, Entry]) -> ArmSheet:
         return ArmSheet(**plain, curves=curves)
 
 
-def _all_used(parts: dict[str, Entry], instruments: Sequence[Instrument]) -> None:
+def _all_used(
+    parts: dict[str, Entry], instruments: Sequence[Instrument], stated: Mapping[str, Unknown]
+) -> None:
     """What is stated of something that no measurement has is a slip of the pen."""
-    used = {unknown.name for one in instruments for unknown in one.unknowns}
+    unknowns = [unknown for one in instruments for unknown in one.unknowns]
+    used = {u.name for u in unknowns if u.free.any() or u.name in stated}
     for key in ("frames", "points", "cameras"):
         for name, entry in _named(parts, key):
             if name not in used:

@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from handeye.calibration.arm.description_tables import PLACE, POINT, Given, Listed, read_columns
 from handeye.calibration.arm.measurements import (
     Distances,
     Instrument,
@@ -16,6 +15,16 @@ from handeye.calibration.arm.measurements import (
     StereoSightings,
     Touches,
     settled,
+)
+from handeye.calibration.setups.tables import (
+    HEIGHT,
+    PIXELS,
+    PLACE,
+    POINT,
+    Given,
+    Listed,
+    Source,
+    read_columns,
 )
 from handeye.errors import InvalidInput
 from handeye.geometry import make_pose, matrix_from_wxyz
@@ -31,10 +40,11 @@ class Kind(NamedTuple):
     keys: tuple[str, ...]
     columns: tuple[str, ...]
     make: Callable[[Listed], Instrument]
+    optional: tuple[str, ...] = ()
 
 
-def made(entry: Entry, given: Given) -> Instrument:
-    """The measurement that an entry of a description lists, placed.
+def made(entry: Entry, given: Given) -> tuple[Instrument, Source]:
+    """The measurement that an entry of a description lists, placed, and where its rows are from.
 
     Raises:
         InvalidInput, LogError: with the place in the description, or the row of the table.
@@ -46,19 +56,22 @@ def made(entry: Entry, given: Given) -> Instrument:
     needed = kind.columns
     if "board" in keys:
         needed = (*needed, POINT)
-    joints, columns = read_columns(keys, given, needed)
+    camera = keys["camera"].text() if "camera" in keys else "camera"
+    picture = given.sizes.get(camera) if PIXELS[0] in needed else None
+    joints, columns, source = read_columns(keys, given, needed, kind.optional, picture)
     listed = Listed(entry, keys, given, joints, columns)
     with entry.blamed():
         placed = kind.make(listed)
         stated = {**given.frames, **given.points}
         mine = {u.name: stated[u.name] for u in placed.unknowns if u.name in stated}
-        return settled(placed.given(mine), listed.flanges)[0] if mine else placed
+        placed = settled(placed.given(mine), listed.flanges)[0] if mine else placed
+    return placed, source
 
 
 def _points(listed: Listed) -> Instrument:
     return PointSightings.start(
         listed.joints, listed.flanges, listed.many(*col.POSITION),
-        setup=listed.setup("eye_to_hand"), name=listed.name, std=listed.std,
+        setup=listed.setup("eye_to_hand"), name=listed.name, std=listed.std_of(col.POSITION_STD),
         sensor=listed.called("sensor", "sensor"), target=listed.called("target", "marker"),
     )  # fmt: skip
 
@@ -85,7 +98,7 @@ def _pixels(listed: Listed) -> Instrument:
             raise listed.keys["board"].error(f"describe the points of {name} under `points:`")
         board, which = listed.given.points[name], listed.columns[POINT].astype(np.int64)
     return PixelSightings.start(
-        listed.joints, listed.flanges, listed.many("u_px", "v_px"),
+        listed.joints, listed.flanges, listed.many(*PIXELS),
         camera=listed.given.cameras[camera], board=board, which=which,
         setup=listed.setup("eye_to_hand"), name=listed.name, std=listed.std,
         sensor=listed.called("sensor", f"frame of {camera}"),
@@ -127,7 +140,7 @@ def _distances(listed: Listed) -> Instrument:
 def _plane(listed: Listed) -> Instrument:
     return PlaneContacts.start(
         listed.joints, listed.flanges, tip=listed.point("tip", "tip", 1e-3), name=listed.name,
-        std=listed.std, plane=listed.called("plane", "plane"),
+        std=listed.std, plane=listed.called("plane", "plane"), heights=listed.columns.get(HEIGHT),
     )  # fmt: skip
 
 
@@ -135,16 +148,17 @@ def _stereo(listed: Listed) -> Instrument:
     return StereoSightings.start(
         listed.joints, listed.flanges, listed.many("range_m", "eccentricity_rad"),
         listed.columns["pointing_rad"], name=listed.name,
+        std=listed.std if "std" in listed.keys else None,
         target=listed.point("target", "marker", 0.1), sensor=listed.called("sensor", "head"),
     )  # fmt: skip
 
 
 KINDS: dict[str, Kind] = {
-    "points": Kind(("setup", "sensor", "target"), col.POSITION, _points),
+    "points": Kind(("setup", "sensor", "target"), col.POSITION, _points, col.POSITION_STD),
     "poses": Kind(("setup", "sensor", "target"), (*col.POSITION, *col.ORIENTATION), _poses),
-    "pixels": Kind(("setup", "sensor", "target", "camera", "board"), ("u_px", "v_px"), _pixels),
+    "pixels": Kind(("setup", "sensor", "target", "camera", "board"), PIXELS, _pixels),
     "touches": Kind(("plate", "geometry", "geometry_within", "tip"), (PLACE,), _touches),
     "distances": Kind(("anchor", "tip", "zero_within"), ("distance_m",), _distances),
-    "plane": Kind(("plane", "tip"), (), _plane),
+    "plane": Kind(("plane", "tip"), (), _plane, (HEIGHT,)),
     "stereo": Kind(("sensor", "target"), col.SIGHTING, _stereo),
 }

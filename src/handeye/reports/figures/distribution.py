@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from handeye.reports.figures.parts import in_unit, lengths_of
 from handeye.reports.style import (
     WIDE,
+    Unit,
     color,
     length_unit,
     name_y,
@@ -26,15 +27,18 @@ def error_distribution(
     after: ArrayLike,
     *,
     names: tuple[str, str] = ("Before", "After"),
+    unit: Unit | None = None,
+    what: str = "Position error",
 ) -> Figure:
     """Share of observations whose error stays below a size, with median and 95 % marked.
 
-    before (N,) or (N, k), after (M,) or (M, k): error lengths or vectors [m].
+    before (N,) or (N, k), after (M,) or (M, k): error lengths or vectors [m], or what else has a
+    `unit`.
     Raises InvalidInput for empty arrays or values that are not finite.
     """
     first, second = lengths_of(before, "before"), lengths_of(after, "after")
     end = max(float(np.percentile(errors, 99)) for errors in (first, second))
-    unit = length_unit(end)
+    unit = unit or length_unit(end)
     figure = new_figure(WIDE, 320)
     axes = figure.add_subplot()
     levels = np.linspace(0.0, 100.0, 201)
@@ -57,7 +61,7 @@ def error_distribution(
     axes.set_ylim(0.0, 103.0)
     axes.set_yticks([0, 25, 50, 75, 95], ["0", "25", "50", "75", "95"])
     axes.xaxis.set_major_locator(MaxNLocator(5))
-    axes.set_xlabel(f"Position error [{unit.name}]")
+    axes.set_xlabel(f"{what} [{unit.name}]")
     name_y(axes, "Share of observations with a smaller error [%]")
     axes.legend(loc="lower right")
     return figure

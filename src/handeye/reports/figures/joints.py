@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from handeye.arrays import Array, shaped
 from handeye.errors import InvalidInput
 from handeye.reports.figures.parts import in_unit, lengths_of, thinned, vectors
-from handeye.reports.style import WIDE, color, length_unit, new_figure, styled
+from handeye.reports.style import WIDE, Unit, color, length_unit, new_figure, styled
 
 _DOTS = 320
 
@@ -32,12 +32,15 @@ def residuals_by_joint(
     after: ArrayLike,
     *,
     component: Component = "length",
+    unit: Unit | None = None,
+    what: str = "Position error",
 ) -> Figure:
     """One small panel per joint: the error over that joint's angle, before and after learning.
 
-    joints (N, n) [rad]; before, after (N, k) error vectors [m]. `component` picks the length of
-    each vector or one signed component. Dots are an evenly spread choice of the observations, the
-    lines are medians of bins over the angle. A slope or wave shows that this joint is in error.
+    joints (N, n) [rad]; before, after (N, k) error vectors [m], or what else has a `unit`.
+    `component` picks the length of each vector or one signed component. Dots are an evenly spread
+    choice of the observations, the lines are medians of bins over the angle. A slope or wave shows
+    that this joint is in error.
     Raises InvalidInput for empty arrays, values that are not finite or shapes that do not match.
     """
     angles = np.degrees(shaped(joints, (None, len(joint_names)), "joints"))
@@ -46,7 +49,7 @@ def residuals_by_joint(
     pair = [_picked(before, "before", component, len(angles))]
     pair.append(_picked(after, "after", component, len(angles)))
     highest = max(float(np.percentile(np.abs(values), 99)) for values in pair)
-    unit = length_unit(highest)
+    unit = unit or length_unit(highest)
     n = len(joint_names)
     columns = n if n < 4 else 2 if n == 4 else 3
     rows = ceil(n / columns)
@@ -64,7 +67,7 @@ def residuals_by_joint(
         axes.yaxis.set_major_locator(MaxNLocator(4))
     top = highest * unit.per_metre * 1.15 or 1.0
     grid[0, 0].set_ylim(0.0 if component == "length" else -top, top)
-    what = "Position error" if component == "length" else f"Error along {component}"
+    what = what if component == "length" else f"Error along {component}"
     figure.supylabel(f"{what} [{unit.name}]", fontsize=12.5, color=color("soft"))
     handles = [
         Line2D([], [], color=color("before"), marker="o", markersize=4, label="Before learning"),

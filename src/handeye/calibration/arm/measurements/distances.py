@@ -127,11 +127,14 @@ class PlaneContacts(PointInstrument):
         name: str = "",
         std: ArrayLike = 0.0,
         plane: str = "plane",
+        heights: ArrayLike | None = None,
     ) -> Self:
         """From N >= 4 contacts and nominal flanges T_base_flange (N, 4, 4).
 
-        tip: the point of the flange, by default within 1 mm of its origin. The plane is the one
-        of which the tips have the least sum of squared distances (SVD).
+        tip: the point of the flange, by default within 1 mm of its origin. heights (N,): how far
+        above the plane a gauge has the point [m], 0 by default. The plane is the one of which the
+        tips have the least sum of squared distances (SVD); with heights z = n p + d is linear in
+        the normal n and d, and n points to where the gauge counts up.
 
         Raises:
             InvalidInput: for too few rows, or arrays that do not fit together.
@@ -144,13 +147,26 @@ class PlaneContacts(PointInstrument):
             )
         p = _tips(flanges, tip)
         middle = p.mean(axis=0)
-        axes = np.linalg.svd(p - middle, full_matrices=False)[2]
-        R = np.stack([axes[0], np.cross(axes[2], axes[0]), axes[2]], axis=1)
-        loose = Frame.near(plane, make_pose(R, middle)).tolerance * [0, 0, 1, 1, 1, 0]
-        return cls(
-            joints=np.asarray(joints), measured=np.zeros((len(p), 1)), std=np.asarray(std),
-            name=name, sight=_fixed(Frame(plane, loose, make_pose(R, middle)), tip, len(p)),
+        z = np.zeros(len(p)) if heights is None else shaped(heights, (len(p),), "heights")
+        if np.ptp(z) > 0.0:
+            normal = linear(np.column_stack([p - middle, np.ones(len(p))]), z)[:3]
+        else:
+            normal = np.linalg.svd(p - middle, full_matrices=False)[2][2]
+        R = _upright(normal / np.linalg.norm(normal))
+        at = make_pose(R, middle - z.mean() * R[:, 2])
+        loose = Frame.near(plane, at).tolerance * [0, 0, 1, 1, 1, 0]
+        placed = cls(
+            joints=np.asarray(joints), measured=z[:, np.newaxis], std=np.asarray(std),
+            name=name, sight=_fixed(Frame(plane, loose, at), tip, len(p)),
         )  # fmt: skip
+        return settled(placed, flanges)[0]
+
+
+def _upright(normal: Array) -> Array:
+    """A rotation (3, 3) whose z axis is a unit normal (3,)."""
+    across = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+    across /= np.linalg.norm(across)
+    return np.asarray(np.stack([across, np.cross(normal, across), normal], axis=1), np.float64)
 
 
 def _tips(flanges: Array, tip: Points) -> Array:

@@ -25,16 +25,11 @@ class PoseSightings(Instrument):
     orientation, its turn [rad], both in the sensor's axes.
 
     measured  S (N, 4, 4)
-    sensor    P, on the flange (eye in hand) or in the base's frame (eye to hand)
-    target    Q, on the other
 
     Raises InvalidInput also for matrices that are no poses.
     """
 
     measured: Array
-    setup: Setup
-    sensor: Frame
-    target: Frame
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -47,43 +42,29 @@ class PoseSightings(Instrument):
         """Position, then orientation."""
         return ("position",) * 3 + ("orientation",) * 3
 
-    @property
-    def unknowns(self) -> tuple[Frame, Frame]:
-        """Sensor and target."""
-        return self.sensor, self.target
-
     def poses(self, flanges: Array, own: tuple[Array, ...]) -> Array:
         """Predicted T_sensor_target (N, 4, 4) at T_base_flange (N, 4, 4) and the blocks' values."""
-        sensor, target = wholes_of(self.unknowns, own)
-        P = self.sensor.pose(sensor)
-        return invert(P) @ carriers(self.setup, flanges) @ self.target.pose(target)
+        sensor, target, _ = wholes_of(self.unknowns, own)
+        sight = self.sight
+        G = carriers(sight.setup, flanges)
+        return invert(sight.sensor.pose(sensor)) @ G @ sight.target.pose(target)
 
     def equations(self, flanges: Array, own: tuple[Array, ...]) -> Equations:
         """Measured minus predicted at T_base_flange (N, 4, 4) and values of the blocks."""
-        sensor, target = wholes_of(self.unknowns, own)
-        first = np.zeros(len(flanges), np.int64)
-        origin = Sight(self.setup, self.sensor, self.target, Points.known(), first)
-        seen = origin.look(flanges, sensor, target, np.zeros(3))
-        P, Q = self.sensor.pose(sensor), self.target.pose(target)
-        G = carriers(self.setup, flanges)[:, :3, :3]
-        into = P[:3, :3].T
-        along = into @ G
+        sensor, target, origin = wholes_of(self.unknowns, own)
+        seen = self.sight.look(flanges, sensor, target, origin)
+        turned = self.poses(flanges, own)[:, :3, :3]
         r = np.empty((len(flanges), 6))
         r[:, :3] = self.measured[:, :3, 3] - seen.s
-        r[:, 3:] = turned_by(self.measured[:, :3, :3] @ (along @ Q[:3, :3]).swapaxes(1, 2))
+        r[:, 3:] = turned_by(self.measured[:, :3, :3] @ turned.swapaxes(1, 2))
         K = inverse_right_jacobian(r[:, 3:])
-        of_flange = -along if self.setup == "eye_in_hand" else np.broadcast_to(into, along.shape)
-        turns = (
-            _turning(of_flange),
-            _turning(np.broadcast_to(-into, along.shape)) @ self.sensor.ways(sensor),
-            _turning(along) @ self.target.ways(target),
-        )
         shifts = (seen.by_flange, seen.by_sensor, seen.by_target)
         by_flange, *by_own = (
             -np.concatenate([shift, K @ turn], axis=1)
-            for shift, turn in zip(shifts, turns, strict=True)
+            for shift, turn in zip(shifts, self.sight.turns(flanges, sensor, target), strict=True)
         )
-        return Equations(r, by_flange, free_of(self.unknowns, by_own))
+        nothing = np.zeros((len(r), 6, len(origin)))
+        return Equations(r, by_flange, free_of(self.unknowns, [*by_own, nothing]))
 
     @classmethod
     def start(
@@ -109,13 +90,10 @@ class PoseSightings(Instrument):
         fit = solve(flanges, S, setup=setup)
         on_flange, on_base = (sensor, target) if setup == "eye_in_hand" else (target, sensor)
         frames = {on_flange: fit.X, on_base: fit.Z}
-        return cls(
-            joints=np.asarray(joints), measured=S, std=np.asarray(std), name=name,
-            setup=setup, sensor=Frame.near(sensor, frames[sensor]),
-            target=Frame.near(target, frames[target]),
+        sight = Sight(
+            setup, Frame.near(sensor, frames[sensor]), Frame.near(target, frames[target]),
+            Points.known(), np.zeros(len(S), np.int64),
         )  # fmt: skip
-
-
-def _turning(R: Array) -> Array:
-    """(N, 3, 6) of derivatives (N, 3, 3) by a turn: a shift turns nothing."""
-    return np.concatenate([np.zeros_like(R), R], axis=2)
+        return cls(
+            joints=np.asarray(joints), measured=S, std=np.asarray(std), name=name, sight=sight
+        )

@@ -117,7 +117,7 @@ class Touches(PointInstrument):
         out = np.empty(len(self.touched), np.int64)
         for place in range(len(self.places.reference)):
             rows = np.flatnonzero(self.touched == place)
-            out[rows] = in_turn(len(rows), count)
+            out[rows] = in_turn(self.joints[rows], count)
         return out
 
     def values(self, s: Array, others: list[Array]) -> tuple[Array, Array, list[Array]]:

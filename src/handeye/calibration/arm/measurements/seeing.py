@@ -20,12 +20,19 @@ from handeye.errors import InvalidInput
 
 Given = TypeVar("Given", bound="Instrument | Sight")
 
+UNITS = {
+    "position": "m", "orientation": "rad", "pixels": "px", "contact": "m", "distance": "m",
+    "height": "m", "range": "m", "eccentricity": "rad",
+}  # fmt: skip
+"""Of each kind of value."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Instrument(ABC):
     """N rows of k values; a `Measurement`.
 
     joints  (N, n) encoder readings [rad] or [m]
+    sight   instrument, target and the point of each row
     std     standard deviations of the values as stated, (N, k), (k,) or one; 0: not stated
     name    of the instrument; the noise of one is not that of another. May be empty.
 
@@ -33,6 +40,7 @@ class Instrument(ABC):
     """
 
     joints: Array
+    sight: Sight
     std: Array = field(default_factory=lambda: np.zeros(1))
     name: str = ""
 
@@ -42,9 +50,14 @@ class Instrument(ABC):
         """(k,) what each value is part of: "position"."""
 
     @property
-    @abstractmethod
+    def others(self) -> tuple[Unknown, ...]:
+        """What else the values depend on."""
+        return ()
+
+    @property
     def unknowns(self) -> tuple[Unknown, ...]:
-        """All that may be unknown, whether it is or not."""
+        """All that may be unknown, whether it is or not: instrument, target, points, others."""
+        return (*self.sight.unknowns, *self.others)
 
     @abstractmethod
     def equations(self, flanges: Array, own: tuple[Array, ...]) -> Equations:
@@ -67,6 +80,11 @@ class Instrument(ABC):
             raise InvalidInput(
                 f"{self.what}: its unknowns need different names, got {', '.join(names)}"
             )
+        if len(self.sight.which) != len(joints):
+            raise InvalidInput(
+                f"{self.what}: {len(joints)} rows of joints do not pair up with "
+                f"{len(self.sight.which)} points that are seen"
+            )
         object.__setattr__(self, "joints", joints)
         object.__setattr__(self, "std", std)
 
@@ -84,6 +102,11 @@ class Instrument(ABC):
     def channels(self) -> tuple[str, ...]:
         """(k,) kinds of values, of this instrument."""
         return tuple(f"{kind} of {self.name}" if self.name else kind for kind in self.kinds)
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """(k,) of the values."""
+        return tuple(UNITS[kind] for kind in self.kinds)
 
     def moved(self, changes: Mapping[str, Array]) -> Self:
         """With the references of its unknowns changed by values of their blocks, by name."""
@@ -116,8 +139,11 @@ class Instrument(ABC):
         return replace(self, **new)
 
     def folds(self, count: int) -> Integers:
-        """(N,) which of `count` blocks of rows that follow each other a row is in."""
-        return in_turn(len(self.joints), count)
+        """(N,) which of `count` blocks of rows that follow each other a row is in.
+
+        Rows at the same joints, such as the points of one picture, are in the same block.
+        """
+        return in_turn(self.joints, count)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -125,32 +151,15 @@ class PointInstrument(Instrument):
     """Values that depend on where a point is in the instrument's frame.
 
     measured  (N, k)
-    sight     instrument, target and the point of each row
     """
 
     measured: Array
-    sight: Sight
 
     def __post_init__(self) -> None:
         super().__post_init__()
         shape = (len(self.joints), len(self.kinds))
         measured = shaped(self.measured, shape, f"measured of {self.what}")
         object.__setattr__(self, "measured", measured)
-        if len(self.sight.which) != len(self.joints):
-            raise InvalidInput(
-                f"{self.what}: {len(self.joints)} rows of joints do not pair up with "
-                f"{len(self.sight.which)} points that are seen"
-            )
-
-    @property
-    def others(self) -> tuple[Unknown, ...]:
-        """What else the values depend on."""
-        return ()
-
-    @property
-    def unknowns(self) -> tuple[Unknown, ...]:
-        """Instrument, target, points, others."""
-        return (*self.sight.unknowns, *self.others)
 
     @abstractmethod
     def values(self, s: Array, others: list[Array]) -> tuple[Array, Array, list[Array]]:
@@ -171,9 +180,11 @@ class PointInstrument(Instrument):
         )
 
 
-def in_turn(n: int, count: int) -> Integers:
-    """(n,) numbers 0 to count - 1 in blocks of nearly equal length."""
-    return np.arange(n) * count // max(n, 1)
+def in_turn(joints: Array, count: int) -> Integers:
+    """(N,) numbers 0 to count - 1, in blocks of nearly as many different joints (N, n)."""
+    _, first, which = np.unique(joints, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(np.argsort(first))
+    return order[which.reshape(-1)] * count // max(len(first), 1)
 
 
 def _given(thing: Given, others: Mapping[str, Unknown]) -> Given:

@@ -103,6 +103,20 @@ class Sight:
             self._by_points(along @ Q[:3, :3]),
         )
 
+    def turns(self, flanges: Array, sensor: Array, target: Array) -> tuple[Array, Array, Array]:
+        """How the target's orientation turns [rad] in axes of the sensor, (N, 3, 6) each.
+
+        By the flange's pose, and by the components of sensor and target; no shift turns anything.
+        """
+        into = self.sensor.pose(sensor)[:3, :3].T
+        along = into @ carriers(self.setup, flanges)[:, :3, :3]
+        still = np.broadcast_to(into, along.shape)
+        return (
+            _turning(-along if self.setup == "eye_in_hand" else still),
+            _turning(-still) @ self.sensor.ways(sensor),
+            _turning(along) @ self.target.ways(target),
+        )
+
     def _by_points(self, by_one: Array) -> Array:
         """(N, 3, 3 P) of derivatives (N, 3, 3) by the point of each row."""
         n, count = len(by_one), len(self.points.reference)
@@ -115,3 +129,8 @@ class Sight:
 def carriers(setup: Setup, flanges: Array) -> Array:
     """G (N, 4, 4): where the target's carrier is in the sensor's."""
     return invert(flanges) if setup == "eye_in_hand" else flanges
+
+
+def _turning(R: Array) -> Array:
+    """(N, 3, 6) of derivatives (N, 3, 3) by a turn: a shift turns nothing."""
+    return np.concatenate([np.zeros_like(R), R], axis=2)

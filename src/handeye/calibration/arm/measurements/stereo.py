@@ -100,15 +100,17 @@ class StereoSightings(PointInstrument):
         head: StereoHead | None = None,
         target: Points | None = None,
         name: str = "",
+        std: ArrayLike | None = None,
         sensor: str = "head",
     ) -> Self:
         """From N >= 6 sightings (N, 2) and nominal flanges T_base_flange (N, 4, 4).
 
         head: its noise, range scale and warps as stated, by default the thesis's; what of the
-        optics is unknown is always found. target: the point of the flange, by default within 0.1 m
-        of its origin. r (cos, sin)(pointing + eps) = R p + t in two of three coordinates is linear
-        in two rows of R, which are then made square; then `settled`. Where the head stands along
-        its pan axis no sighting tells.
+        optics is unknown is always found. std: of range [m] and eccentricity [rad], instead of the
+        head's. target: the point of the flange, by default within 0.1 m of its origin.
+        r (cos, sin)(pointing + eps) = R p + t in two of three coordinates is linear in two rows of
+        R, which are then made square; then `settled`. Where the head stands along its pan axis no
+        sighting tells.
 
         Raises:
             InvalidInput: for too few rows, or arrays that do not fit together.
@@ -129,10 +131,12 @@ class StereoSightings(PointInstrument):
         across, upright = (linear(p - middle, one) for one in (plane - centre).T)
         R = nearest_rotation(np.stack([across, upright, np.cross(across, upright)], axis=1))
         at = middle - R @ np.append(centre, 0.0)
+        if std is None:
+            std = np.stack([head.range_std(*seen.T), head.eccentricity_std(seen[:, 1])], axis=-1)
         optics = np.array([head.eccentricity_warp, head.range_warp, scale])
         rough = cls(
             joints=np.asarray(joints), measured=seen, pointing=pan, name=name,
-            std=np.stack([head.range_std(*seen.T), head.eccentricity_std(seen[:, 1])], axis=-1),
+            std=np.asarray(std),
             sight=Sight(
                 "eye_to_hand", Frame.near(sensor, make_pose(R, at)), Frame.known(), target,
                 np.zeros(len(seen), np.int64),

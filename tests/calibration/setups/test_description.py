@@ -5,11 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.calibration.arm.arms import arm
-from tests.calibration.arm.measured import looking, pose
+from tests.calibration.setups.described import EYE, POINTS, table, tables, written
 
-from handeye.arrays import Array, Integers
-from handeye.calibration.arm.description_file import load_description
-from handeye.calibration.arm.description_kinds import KINDS
+from handeye.arrays import Array
 from handeye.calibration.arm.estimator import FINE
 from handeye.calibration.arm.measurements import (
     Distances,
@@ -23,54 +21,16 @@ from handeye.calibration.arm.measurements import (
     StereoSightings,
     Touches,
 )
-from handeye.errors import FileFormatError, HandeyeError, InvalidInput, LogError
+from handeye.calibration.arm.sheet import CurveTerms
+from handeye.calibration.setups.description import load_description
+from handeye.calibration.setups.kinds import KINDS
+from handeye.errors import FileFormatError, InvalidInput
 from handeye.geometry import invert, transform, wxyz_from_matrix
-
-N = 25
-JOINTS = [f"{name}_rad" for name in arm().joint_names]
-MARKER = np.array([0.03, -0.02, 0.08])
-EYE = looking(np.random.default_rng(1), 3.5)
-K = (1000.0, 1000.0, 640.0, 480.0)
-
-
-def table(path: Path, joints: Array, **columns: Array | Integers) -> None:
-    values = np.column_stack([joints, *columns.values()])
-    header = ",".join([*JOINTS, *columns])
-    np.savetxt(path, values, delimiter=",", header=header, comments="", fmt="%.12g")
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A table of each kind, of an arm without errors."""
-    place, rng = tmp_path_factory.mktemp("described"), np.random.default_rng(0)
-    q = rng.uniform(-2.0, 2.0, (N, 6))
-    A = arm().poses(q)
-    p = transform(A, MARKER)
-    s = transform(invert(EYE), p)
-    xyz = dict(zip(("x_m", "y_m", "z_m"), s.T, strict=True))
-    table(place / "points.csv", q, **xyz)
-    X, Z = pose(rng), pose(rng)
-    S = invert(A @ X) @ Z
-    wxyz = wxyz_from_matrix(S[:, :3, :3])
-    names = ("x_m", "y_m", "z_m", "qw", "qx", "qy", "qz")
-    table(place / "poses.csv", q, **dict(zip(names, [*S[:, :3, 3].T, *wxyz.T], strict=True)))
-    u, v = 1000.0 * s[:, 0] / s[:, 2] + 640.0, 1000.0 * s[:, 1] / s[:, 2] + 480.0
-    table(place / "pixels.csv", q, u_px=u, v_px=v)
-    still = np.repeat(q[:2], [6, 7], axis=0)
-    table(place / "touches.csv", still, place=np.repeat([4, 9], [6, 7]))
-    reel = np.array([1.4, 0.2, 0.1])
-    table(place / "distances.csv", q, distance_m=np.linalg.norm(p - reel, axis=1) + 0.05)
-    table(place / "plane.csv", np.tile(q[0], (5, 1)) + np.eye(6)[[5]] * np.arange(5)[:, np.newaxis])
-    head = transform(invert(pose(rng, 0.01, 0.1)), p + np.array([2.0, 0.0, 0.0]))
-    pan = 0.9 * np.arctan2(head[:, 1], head[:, 0])
-    r, eps = np.hypot(head[:, 0], head[:, 1]), np.arctan2(head[:, 1], head[:, 0]) - pan
-    table(place / "stereo.csv", q, pointing_rad=pan, range_m=r, eccentricity_rad=eps)
-    return place
-
-
-def written(folder: Path, text: str, name: str = "setup.yaml") -> Path:
-    (folder / name).write_text(text, encoding="utf-8")
-    return folder / name
+    return tables(tmp_path_factory.mktemp("described"))
 
 
 ALL = """\
@@ -113,8 +73,7 @@ def test_every_kind_is_read_and_placed(folder: Path):
             np.testing.assert_allclose(residuals(one), 0.0, atol=2e-3, err_msg=kind)
     assert found.sheet.shift == 2e-3
     assert found.sheet.compliance == 0.0
-    assert found.sheet.curves.own == 8
-    assert found.sheet.curves.others == FINE.others
+    assert found.sheet.curves == CurveTerms(8, FINE.others)
     tracker, camera, eye, touches, *_ = found.measurements
     assert tracker.channels == ("position of tracker",) * 3
     np.testing.assert_array_equal(tracker.std, 1e-5)
@@ -176,7 +135,6 @@ cameras: {eye: {matrix: [1000, 1000, 640, 480]}}
     assert folder != tmp_path
 
 
-POINTS = "measurements:\n  - {kind: points, file: points.csv, sensor: tracker, target: ball}\n"
 SLIPS = {
     "sensors: 1\n" + POINTS: r"setup.yaml, line 1, sensors: is not known here: .*measurements",
     "robot: ur10\n": "setup.yaml, line 1: needs measurements",
@@ -203,6 +161,14 @@ SLIPS = {
     "measurements:\n  - {kind: touches, file: touches.csv, geometry: [[0, 0, 0]]}\n":
         "geometry: must list x, y, z of the 2 places place 4, 9",
     POINTS + POINTS: "line 3, measurements: comes twice, first in line 1",
+    "measurements:\n  - {kind: plane, file: short.csv}\n":
+        "line 2, measurements 1: plane needs at least 4 contacts to be placed, got 2",
+    "measurements:\n  - {kind: pixels, file: pixels.csv, camera: eye}\n"
+    "cameras: {eye: {matrix: [1, 1, 0, 0], size: [640]}}\n":
+        r"size: must be \[width, height\] in pixels",
+    POINTS + "cameras: {eye: {within: 1}}\n": "eye: needs either `matrix`",
+    POINTS + "cameras: {eye: {camera_info: ros.yaml, size: [1, 1]}}\n": "has distortion and size",
+    POINTS + "cameras: {eye: {camera_info: setup.yaml}}\n": "lacks image_width, image_height",
 }  # fmt: skip
 
 
@@ -223,15 +189,3 @@ def test_files_that_are_no_descriptions(folder: Path):
         load_description(written(folder, POINTS))
     with pytest.raises(InvalidInput, match="line 1, robot: no robot is called 'ur11'"):
         load_description(written(folder, "robot: ur11\n" + POINTS))
-
-
-def test_bad_rows_are_named_or_left_out(folder: Path, tmp_path: Path):
-    lines = (folder / "points.csv").read_text(encoding="utf-8").splitlines()
-    lines[3] = lines[3].rsplit(",", 1)[0] + ",lost"
-    (tmp_path / "points.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    path = written(tmp_path, POINTS)
-    with pytest.raises(LogError, match="row 4: z_m is 'lost'"):
-        load_description(path, arm())
-    (one,) = load_description(path, arm(), skip_bad=True).measurements
-    assert len(one.joints) == N - 1
-    assert issubclass(LogError, HandeyeError)
