@@ -80,8 +80,13 @@ def test_a_drifting_robot_is_followed_where_that_is_better(late, follows):
     online = np.full((90, 1), 9.0)
     online[60:] = late
     online[-1] = 9.0 if follows else 0.0
-    assert follows_better(online, held(after=1.0), 0) == follows
-    assert follows_better(online, None, 0)
+
+    def fitted(rows):
+        np.testing.assert_array_equal(rows, np.arange(60, 90))
+        return np.full((30, 1), 1.0)
+
+    assert follows_better(online, held(after=1.0), 0, fitted) == follows
+    assert follows_better(online, None, 0, fitted) == follows
 
 
 def events(*told: Event) -> Any:

@@ -88,15 +88,18 @@ def chosen(found: Learned, held: HeldOut | None) -> Chosen:
     return Chosen(whole, held)
 
 
-def follows_better(online: Array, held: HeldOut | None, since: int) -> bool:
+def follows_better(
+    online: Array, held: HeldOut | None, since: int, fitted: Callable[[Integers], Array]
+) -> bool:
     """Whether a robot that drifts is known better by who follows it than by a fit to all rows.
 
-    online (N, k): errors before each row was learned.
+    online (N, k): errors before each row was learned, of which the late ones count; fitted: rows
+    (M,) to errors (M, k) of the fit. These stand for the held-out ones where there are none, and
+    flatter the fit: only a drift that no fit can hide is followed then.
     """
-    if held is None or not len(held.rows):
-        return True
-    late = ErrorSummary.of(online[max(since, len(online) - len(online) // _LATE) :])
-    return late.mean < ErrorSummary.of(held.after).mean
+    late = np.arange(max(since, len(online) - len(online) // _LATE), len(online))
+    others = held.after if held is not None and len(held.rows) else fitted(late)
+    return ErrorSummary.of(online[late]).mean < ErrorSummary.of(others).mean
 
 
 def _worse(errors: Array, others: Array, alike: Integers) -> bool:

@@ -115,7 +115,11 @@ def calibrate_log(
         since=since, after_each=lambda k: progress(min(done + k, work), work),
     )  # fmt: skip
     drifting = drifts(online)
-    if found is not None and drifting and follows_better(tested.error, held, since):
+    if (
+        found is not None
+        and drifting
+        and follows_better(tested.error, held, since, lambda rows: found.whole.errors(seen[rows]))
+    ):
         whole, believed = online, None
     elif found is not None:
         drifting = False

@@ -46,7 +46,8 @@ class Surprises:
 
     With H their derivatives and P the covariance, they spread as S = I + H P H^T if nothing
     changed, as S + H_g H_g^T if part g jumped by about its tolerance (generalised likelihood
-    ratio), and widely, each for itself, if they are outliers.
+    ratio), and widely, each for itself, if they are outliers. P is small where a change can be
+    told, so S is that of derivatives before it.
     """
 
     def __init__(self, chain: Chain, rules: Rules, bank: Bank, h: int, gate: float) -> None:
@@ -114,9 +115,8 @@ def best_change(surprises: Surprises, recent: Integers, odds: float) -> Found | 
             # A jump can be too large for derivatives before it: near the eye a slip of an encoder
             # looked less like itself than like a camera remounted.
             places = surprises.chain.changes[change].places
-            after, bent = surprises.linearised(recent, places, jump)
-            parts = (after, bent, surprises.spread(bent))
-            kept, gain, jump, std = _explain(surprises, change, since, parts, wide)
+            after = surprises.linearised(recent, places, jump)
+            kept, gain, jump, std = _explain(surprises, change, since, (*after, S), wide)
             log_odds = gain - float(otherwise[since].sum())
             if kept.sum() < _FEWEST:
                 continue
