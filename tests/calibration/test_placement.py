@@ -1,4 +1,4 @@
-"""Base and marker from sightings: exact, noisy, spoilt and insufficient ones, and the UR10's."""
+"""Base and marker from sightings: exact, noisy and spoilt ones, and the UR10's."""
 
 from dataclasses import replace
 
@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
+from tests.calibration.placements import UR10, Planar, random_joints, sightings
 
 from handeye.calibration.placement import Placement, estimate_placement
 from handeye.calibration.placement_problem import PlacementProblem
@@ -15,52 +16,6 @@ from handeye.errors import InvalidInput
 from handeye.geometry import make_pose, matrix_from_wxyz, wxyz_from_matrix
 from handeye.io.convert import convert
 from handeye.observations import PointObservation
-from handeye.robots.urdf import load_arm
-
-UR10 = load_arm("ur10")
-
-
-class Planar:
-    """A two-link arm in the plane z = 0."""
-
-    name = "planar"
-    joint_names = ("alpha", "beta")
-    lower = np.full(2, -np.pi)
-    upper = np.full(2, np.pi)
-    reach = 0.55
-    held = np.zeros(2, np.bool_)
-
-    def poses(self, joints):
-        alpha, both = joints[:, 0], joints.sum(axis=1)
-        R = Rotation.from_rotvec(both[:, None] * [0.0, 0.0, 1.0]).as_matrix()
-        x = 0.3 * np.cos(alpha) + 0.25 * np.cos(both)
-        y = 0.3 * np.sin(alpha) + 0.25 * np.sin(both)
-        return make_pose(R, np.stack([x, y, 0.0 * x], axis=1))
-
-    def jacobians(self, joints):
-        raise NotImplementedError
-
-
-def random_pose(rng, size):
-    return make_pose(Rotation.random(rng=rng).as_matrix(), size * rng.normal(size=3))
-
-
-def sightings(arm, joints, rng, *, noise=0.0, oriented=True, marker=0.2):
-    """A true placement, and what a tracker sees of it."""
-    true = Placement(random_pose(rng, 2.0), random_pose(rng, marker))
-    seen = true.T_sensor_base @ arm.poses(joints) @ true.T_flange_marker
-    wobble = Rotation.from_rotvec(noise * rng.normal(size=(len(joints), 3))).as_matrix()
-    return true, PointObservation(
-        np.arange(float(len(joints))),
-        joints,
-        seen[:, :3, 3] + noise * rng.normal(size=(len(joints), 3)),
-        wxyz_from_matrix(seen[:, :3, :3] @ wobble) if oriented else None,
-    )
-
-
-def random_joints(rng, n, joints=6):
-    return rng.uniform(-2.5, 2.5, (n, joints))
-
 
 seeds = st.integers(0, 2**32 - 1).map(np.random.default_rng)
 
@@ -193,97 +148,6 @@ def test_planar_arm_with_a_fixed_marker_is_determined(rng):
     np.testing.assert_allclose(fit.placement.T_sensor_base, true.T_sensor_base, atol=1e-9)
     np.testing.assert_array_equal(fit.placement.T_flange_marker, np.eye(4))
     assert fit.undetermined == ()
-
-
-@given(rng=seeds, noise=st.sampled_from([0.0, 1e-3]))
-def test_planar_arm_leaves_the_free_marker_open_along_its_axis(rng, noise):
-    true, seen = sightings(
-        Planar(), random_joints(rng, 60, 2), rng, noise=noise, oriented=False, marker=0.1
-    )
-    fit = estimate_placement(Planar(), seen)
-    marker = fit.placement.T_flange_marker[:3, 3]
-    np.testing.assert_allclose(
-        marker[:2], true.T_flange_marker[:2, 3], atol=1e-7 if noise == 0.0 else 5e-3
-    )
-    assert abs(marker[2]) < 1e-6
-    assert fit.undetermined == (
-        "the position of the base together with the position of the marker",
-    )
-    assert "turns about one axis only" in fit.status
-    assert fit.condition == np.inf
-    assert np.linalg.norm(fit.residuals, axis=1).max() < 10.0 * noise + 1e-9
-
-
-def moving_only(rng, *joints, n=50):
-    q = np.tile(random_joints(rng, 1), (n, 1))
-    q[:, list(joints)] = rng.uniform(-2.0, 2.0, (n, len(joints)))
-    return q
-
-
-@pytest.mark.parametrize("oriented", [True, False])
-@pytest.mark.parametrize(
-    ("joints", "said"),
-    [
-        ((), "neither turns nor moves"),
-        ((0,), "turns about one axis only"),
-        ((5,), "turns about one axis only"),
-        ((1, 2, 3), "turns about one axis only"),
-    ],
-    ids=["none", "first", "last", "parallel"],
-)
-def test_joints_that_stand_still_are_named_as_what_is_missing(joints, said, oriented):
-    rng = np.random.default_rng(3)
-    _, seen = sightings(UR10, moving_only(rng, *joints), rng, noise=1e-3, oriented=oriented)
-    fit = estimate_placement(UR10, seen)
-    assert fit.undetermined
-    assert said in fit.status
-    assert "the arm does not explain the log" not in fit.status
-    # What is left open must not run away.
-    assert np.linalg.norm(fit.placement.T_flange_marker[:3, 3]) < 1.0
-    assert np.linalg.norm(fit.residuals, axis=1).max() < 6e-3
-
-
-def test_encoder_noise_of_a_joint_that_stands_still_is_not_taken_for_motion():
-    rng = np.random.default_rng(4)
-    joints = moving_only(rng, 0) + 1e-4 * rng.normal(size=(50, 6))
-    _, seen = sightings(UR10, joints, rng, noise=1e-3)
-    fit = estimate_placement(UR10, seen)
-    assert fit.undetermined
-    assert "turns about one axis only" in fit.status
-    assert np.linalg.norm(fit.placement.T_flange_marker[:3, 3]) < 1.0
-
-
-@pytest.mark.parametrize("n", [1, 2])
-def test_too_few_rows_are_said_to_be_too_few(n):
-    rng = np.random.default_rng(5)
-    _, seen = sightings(UR10, random_joints(rng, n), rng)
-    fit = estimate_placement(UR10, seen)
-    assert fit.undetermined
-    assert "add rows" in fit.status
-
-
-def test_rows_that_leave_nothing_to_check_are_said_to():
-    rng = np.random.default_rng(6)
-    _, seen = sightings(UR10, random_joints(rng, 4), rng)
-    assert "leave next to nothing to check them with" in estimate_placement(UR10, seen).status
-
-
-def test_a_log_of_another_arm_is_doubted():
-    rng = np.random.default_rng(7)
-    joints = random_joints(rng, 100)
-    _, seen = sightings(UR10, joints[:, ::-1], rng)
-    fit = estimate_placement(UR10, replace(seen, joints=joints))
-    assert "the arm does not explain the log" in fit.status
-
-
-def test_quaternions_in_the_wrong_order_are_doubted_but_do_no_harm():
-    rng = np.random.default_rng(8)
-    true, seen = sightings(UR10, random_joints(rng, 100), rng, noise=1e-4)
-    assert seen.orientation is not None
-    xyzw = np.roll(seen.orientation, -1, axis=1)
-    fit = estimate_placement(UR10, replace(seen, orientation=xyzw))
-    assert "w first" in fit.status
-    np.testing.assert_allclose(fit.placement.T_sensor_base, true.T_sensor_base, atol=1e-3)
 
 
 def test_rows_that_do_not_fit_the_arm_are_refused():

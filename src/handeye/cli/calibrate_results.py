@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 from rich.console import Console
-from rich.markup import escape
 
 from handeye.arrays import Array, Integers
 from handeye.calibration.contributions import contributions
@@ -14,9 +13,9 @@ from handeye.calibration.log_run import Calibration
 from handeye.calibration.results import CalibrationResult, ErrorSummary
 from handeye.calibration.verdict import verdict
 from handeye.cli.console import out, table
+from handeye.cli.found import WORST, between, print_open, print_parts, print_rejected, say
 
 _UNCHANGED = 0.05
-_WORST, _PARTS, _LISTED = 5, 8, 5
 _WITH = {
     "placement": "nominal robot",
     "geometry": "geometry alone",
@@ -82,22 +81,18 @@ def print_results(done: Calibration, files: dict[str, Any]) -> None:
     """Tables and findings for a person, and where the files are."""
     result, console = done.result, out()
     _print_errors(result, console)
-    _say(console, "advice", [verdict(result).advice])
-    _say(console, "frames", [done.frames])
+    say(console, "advice", [verdict(result).advice])
+    say(console, "frames", [done.frames])
     if result.n_neurons is not None:
-        _say(console, "neurons", [str(result.n_neurons[-1])])
-    _print_parts(result, console)
-    _say(console, "findings", result.findings)
-    _say(console, "open", result.undetermined[:_LISTED])
-    if len(result.undetermined) > _LISTED:
-        more = len(result.undetermined) - _LISTED
-        _say(console, "", [f"and {more} more that the poses leave to ordinary tolerances"])
+        say(console, "neurons", [str(result.n_neurons[-1])])
+    print_parts(console, "Which part was off, and by how much", result.parts)
+    say(console, "findings", result.findings)
+    print_open(console, result.undetermined)
     _print_influence(result, console)
-    if result.rejected:
-        _say(console, "rejected", [f"{len(result.rejected)} rows", *result.rejected[:_LISTED]])
+    print_rejected(console, result.rejected)
     for name, path in files.items():
         if path is not None:
-            _say(console, name, [str(path)])
+            say(console, name, [str(path)])
 
 
 def _print_errors(result: CalibrationResult, console: Console) -> None:
@@ -128,26 +123,8 @@ def _print_errors(result: CalibrationResult, console: Console) -> None:
 
 
 def _cells(s: ErrorSummary, scale: float) -> list[str]:
-    between = ""
-    if s.interval is not None:
-        between = " to ".join(f"{scale * end:#.3g}" for end in s.interval)
     rms, p95, most = (f"{scale * v:#.3g}" for v in (s.rms, s.p95, s.max))
-    return [str(s.n), f"{scale * s.mean:#.3g}", between, rms, p95, most]
-
-
-def _print_parts(result: CalibrationResult, console: Console) -> None:
-    if not result.parts:
-        return
-    shown = table(
-        "Which part was off, and by how much",
-        "part", "its most changed number", "moves the hand [mm]", "known", left=2,
-    )  # fmt: skip
-    for part in result.parts[:_PARTS]:
-        number = f"{part.unknown} {part.change:+.3g} ± {part.std:.2g} {part.unit}".rstrip()
-        shown.add_row(part.part, number, f"{1e3 * part.moves:#.3g}", f"{part.known:.0%}")
-    console.print(shown)
-    if len(result.parts) > _PARTS:
-        _say(console, "", [f"and {len(result.parts) - _PARTS} more parts, which move it less"])
+    return [str(s.n), f"{scale * s.mean:#.3g}", between(s, scale), rms, p95, most]
 
 
 def _print_influence(result: CalibrationResult, console: Console) -> None:
@@ -158,17 +135,12 @@ def _print_influence(result: CalibrationResult, console: Console) -> None:
         "Rows to look at first", "row", "time in s", "error in mm", "times the ordinary", "",
         left=0,
     )  # fmt: skip
-    for i in pulled.worst(_WORST).tolist():
+    for i in pulled.worst(WORST).tolist():
         time = "" if result.times is None else f"{result.times[i]:.6g}"
         said = "not believed" if pulled.left_out[i] else ""
         numbers = f"{1e3 * pulled.residual[i]:#.3g}", f"{pulled.times[i]:.1f}"
         shown.add_row(str(_row(result, i)), time, *numbers, said)
     console.print(shown)
-
-
-def _say(console: Console, head: str, lines: list[str] | tuple[str, ...]) -> None:
-    for i, line in enumerate(lines):
-        console.print(f"{'' if i else head:<10}{escape(line)}", highlight=False, soft_wrap=True)
 
 
 def _status(before: ErrorSummary, after: ErrorSummary) -> str:

@@ -16,6 +16,7 @@ from handeye.calibration.log_checks import in_order_of
 from handeye.calibration.placed import arm_of
 from handeye.cli.bags import read_any
 from handeye.cli.console import check_places, err, out, table, write_json
+from handeye.cli.found import WORST, print_rejected, say
 from handeye.cli.robot import ROBOT_HELP, load_robot
 from handeye.errors import InvalidInput
 from handeye.geometry import make_pose, matrix_from_wxyz, wxyz_from_matrix
@@ -25,8 +26,6 @@ from handeye.io.pairs import read_pairs
 from handeye.io.urdf_origins import xyz_rpy
 from handeye.io.yaml_files import HandEyeFrames, hand_eye_yaml
 from handeye.observations import PointObservation
-
-_WORST = 5
 
 
 class _Solved(NamedTuple):
@@ -179,18 +178,15 @@ def _print(solved: _Solved, console: Console) -> None:
         spread = [*(f"{1e3 * v:.2g}" for v in std[3:]), *(f"{v:.2g}" for v in turns)]
         shown.add_row("  ±, turns about x, y, z", *spread, end_section=True)
     console.print(shown)
-    _say(console, "status", fit.status)
-    _say(
-        console, "residual",
-        f"{1e3 * _rms(fit, slice(3, 6)):.3g} mm and {np.degrees(_rms(fit, slice(3))):.3g}°, "
-        "root mean square without outliers",
-    )  # fmt: skip
+    say(console, "status", [fit.status])
+    sizes = f"{1e3 * _rms(fit, slice(3, 6)):.3g} mm and {np.degrees(_rms(fit, slice(3))):.3g}°"
+    say(console, "residual", [f"{sizes}, root mean square without outliers"])
     if fit.scale_std > 0.0:
-        _say(console, "scale", f"{fit.scale:.5g} ± {fit.scale_std:.2g}")
+        say(console, "scale", [f"{fit.scale:.5g} ± {fit.scale_std:.2g}"])
     first = table("Rows to look at first", "row", "influence", "misfit", "", left=0)
     misfit = np.linalg.norm(fit.normalised, axis=1)
     doubtful = fit.influence + 1e3 * (fit.good < 0.5)
-    for i in np.argsort(-doubtful, kind="stable")[:_WORST].tolist():
+    for i in np.argsort(-doubtful, kind="stable")[:WORST].tolist():
         said = "an outlier, left out" if fit.good[i] < 0.5 else ""
         first.add_row(str(solved.rows[i]), f"{fit.influence[i]:.2g}", f"{misfit[i]:.1f}", said)
     console.print(first)
@@ -198,9 +194,4 @@ def _print(solved: _Solved, console: Console) -> None:
         "influence: by how many standard deviations the result moves without the row",
         style="dim", highlight=False, soft_wrap=True,
     )  # fmt: skip
-    for line in solved.rejected:
-        _say(console, "rejected", line)
-
-
-def _say(console: Console, head: str, text: str) -> None:
-    console.print(f"{head:<10}{escape(text)}", highlight=False, soft_wrap=True)
+    print_rejected(console, solved.rejected)
