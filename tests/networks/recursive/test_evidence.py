@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from handeye.networks.recursive import RecursiveNetwork
-from handeye.networks.recursive.evidence import _cost, relevance
+from handeye.networks.recursive.evidence import _cost, fitting_factor, relevance
 
 
 def samples(n=150, noise=0.1):
@@ -65,15 +65,48 @@ def test_inputs_and_targets_that_do_not_vary_do_no_harm(constant):
     assert np.isfinite(learner.predict_many(x)).all()
 
 
-def test_the_network_takes_the_scales_and_learns_the_first_samples_anew():
+@pytest.mark.parametrize("capacity", [1000, 20])
+def test_the_network_takes_the_scales_and_learns_the_first_samples_anew(capacity):
     x, y = samples(60)
-    learner = RecursiveNetwork(3, 2, relevance_samples=50)
+    learner = RecursiveNetwork(3, 2, capacity=capacity, relevance_samples=50)
     learner.learn_many(x[:49], y[:49])
     np.testing.assert_allclose(learner.scales, np.sqrt(3.0))
     learner.learn(x[49], y[49])
-    np.testing.assert_allclose(learner.scales, relevance(x[:50], y[:50]).scales)
+    found = relevance(x[:50], y[:50])
+    # With the neurons that there can be.
+    factor = fitting_factor(x[: min(capacity, 50)] / found.scales, found.noise_ratio, 1e-6)
+    np.testing.assert_allclose(learner.scales, found.scales * factor)
     assert learner.trials == 50
     # With the first scales it is 0.22.
     assert np.mean((learner.predict_many(x[:50]) - y[:50]) ** 2) < 0.05
     learner.learn_many(x[50:], y[50:])
     assert learner.trials == 60
+
+
+def missing(points, factor):
+    """Mean over the points of what Gaussians at all others do not represent there."""
+    z = ((points[:, np.newaxis] - points) ** 2).sum(axis=2) / factor**2
+    C = np.exp(-0.5 * z) + 1e-6 * np.eye(len(points))
+    left: list[float] = []
+    for j in range(len(points)):
+        others = np.arange(len(points)) != j
+        k = C[j, others]
+        left.append(C[j, j] - k @ np.linalg.solve(C[np.ix_(others, others)], k))
+    return np.mean(left)
+
+
+@pytest.mark.parametrize("noise_ratio", [0.02, 0.05])
+def test_scales_are_as_short_as_neurons_can_represent(noise_ratio):
+    points = np.random.default_rng(1).uniform(-4.0, 4.0, size=(80, 2))
+    factor = fitting_factor(points, noise_ratio, 1e-6)
+    assert 0.76 < factor < 1.19
+    assert missing(points, factor) == pytest.approx(noise_ratio, rel=0.03)
+    # Less noise than a thousandth of the prior is like a thousandth.
+    dense = 0.625 * points
+    assert 0.8 < fitting_factor(dense, 1e-5, 1e-6) == fitting_factor(dense, 1e-3, 1e-6) < 1.0
+
+
+@pytest.mark.parametrize(("spread", "factor"), [(0.1, 0.75), (10.0, 1.2)])
+def test_scales_change_by_little(spread, factor):
+    points = np.random.default_rng(1).uniform(-spread, spread, size=(80, 2))
+    assert fitting_factor(points, 0.03, 1e-6) == pytest.approx(factor, rel=1e-12)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.networks.samples import fewer
 
 from handeye.networks import InputSpace
 from handeye.networks.recursive import KalmanNetwork
@@ -166,7 +167,7 @@ def test_the_variance_is_that_of_the_linearised_output():
     np.testing.assert_allclose(network.variance(x[0]), np.diag(total), rtol=1e-6)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=fewer(20, 5), deadline=None)
 @given(st.integers(0, 10**6), st.floats(0.0, 1.0))
 def test_a_step_reduces_the_error_at_the_same_sample(seed, shape):
     network = grown(shape_deviation=shape)
@@ -181,7 +182,7 @@ def test_a_step_reduces_the_error_at_the_same_sample(seed, shape):
 def test_covariances_stay_symmetric_positive_and_below_their_prior(forgetting):
     rng = np.random.default_rng(0)
     network = KalmanNetwork(3, 1, capacity=20, forgetting=forgetting, error_threshold=0.1)
-    x = rng.normal(size=(30_000, 3)) * [1.0, 1e3, 1e-3]  # far away, and hardly anything
+    x = rng.normal(size=(fewer(30_000, 300), 3)) * [1.0, 1e3, 1e-3]  # far away, and hardly anything
     x[::3] = x[0]
     y = np.sign(x[:, :1]) * 10.0 ** rng.uniform(-6.0, 3.0, size=(len(x), 1))
     network.learn_many(x, y)
@@ -197,8 +198,8 @@ def test_covariances_stay_symmetric_positive_and_below_their_prior(forgetting):
 def test_forgetting_lets_a_neuron_follow():
     left = {}
     for forgetting in (1.0, 0.95):
-        network = grown(capacity=12, n=3000, forgetting=forgetting)
-        x, y = samples(400, seed=5)
+        network = grown(capacity=12, n=fewer(3000, 300), forgetting=forgetting)
+        x, y = samples(fewer(400, 150), seed=5)
         network.learn_many(x, 1.0 - y)
         left[forgetting] = np.mean((network.predict_many(x) - 1.0 + y) ** 2)
     assert left[0.95] < 0.5 * left[1.0]
@@ -206,7 +207,7 @@ def test_forgetting_lets_a_neuron_follow():
 
 def test_learning_scales_finds_what_matters():
     rng = np.random.default_rng(1)
-    x = rng.uniform(-1.0, 1.0, size=(4000, 2))
+    x = rng.uniform(-1.0, 1.0, size=(fewer(4000, 500), 2))
     y = np.sin(4.0 * x[:, :1])  # the second does not matter
     fixed, learned = (KalmanNetwork(2, 1, capacity=40, scale_deviation=s) for s in (0.0, 0.3))
     for network in (fixed, learned):
@@ -216,9 +217,10 @@ def test_learning_scales_finds_what_matters():
 
 
 def test_moving_neurons_do_more_with_few_of_them():
-    x, y = samples(4000)
+    n = fewer(4000, 500)
+    x, y = samples(n)
     left = []
     for shape in (0.0, 0.3):
-        network = grown(capacity=8, n=4000, shape_deviation=shape, scale_deviation=0.0)
+        network = grown(capacity=8, n=n, shape_deviation=shape, scale_deviation=0.0)
         left.append(np.mean((network.predict_many(x) - y) ** 2))
     assert left[1] < 0.5 * left[0]

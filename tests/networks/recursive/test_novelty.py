@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 from tests.networks.recursive.test_recursion import information, prior, responses, samples
+from tests.networks.samples import fewer
 
 from handeye.networks import InputSpace
 from handeye.networks.recursive import RecursiveNetwork
-from handeye.networks.recursive.posterior import novel
+from handeye.networks.recursive.posterior import novel, prior_factor
 
 
 def network(novelty, **options):
@@ -53,7 +54,8 @@ def test_that_of_which_most_is_missing_is_taken_first():
         if left.max() <= 1e-6 + 0.5 * 0.05:
             break
         chosen.append(int(np.argmax(left)))
-    found = novel(learner._learner.posterior, learner.settings, 0, points)
+    posterior = learner._learner.posterior
+    found = novel(posterior, learner.settings, 0, points, prior_factor(posterior, 0))
     assert found.tolist() == sorted(chosen)
 
 
@@ -65,12 +67,13 @@ def test_without_the_threshold_all_are_kept():
 
 
 def test_what_is_left_out_is_not_missed():
-    x, y = samples(2000)
+    n, capacity = fewer(2000, 200), fewer(400, 120)
+    x, y = samples(n)
     probe = samples(300, seed=1)[0]
-    many, few = network(0.0, capacity=400), network(0.01, capacity=400)
+    many, few = network(0.0, capacity=capacity), network(0.01, capacity=capacity)
     for learner in (many, few):
         learner.learn_many(x, y)
-    assert few.n_neurons < 0.4 * many.n_neurons
+    assert few.n_neurons < fewer(0.4, 0.7) * many.n_neurons
     difference = few.predict_many(probe) - many.predict_many(probe)
     uncertain = np.sqrt(many.variance_many(probe) - many.noise**2)
     assert np.abs(difference).max() < uncertain.max()

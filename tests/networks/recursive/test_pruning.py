@@ -4,12 +4,13 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.networks.recursive.test_recursion import grown, information, responses, samples
+from tests.networks.samples import fewer
 
 from handeye.networks import InputSpace
 from handeye.networks.recursive import RecursiveNetwork
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=fewer(10, 3), deadline=None)
 @given(st.floats(1e-4, 0.5), st.integers(0, 10**6))
 def test_outputs_at_what_was_learned_change_by_less_than_the_tolerance(tolerance, seed):
     network = grown(capacity=30)

@@ -111,15 +111,16 @@ def test_a_new_neuron_inherits_the_information_of_its_imitation():
     network.prune(0.0)  # consolidates
     old = network._learner.n_neurons
     before = information(network) - prior(network)
-    network.learn([5.0, 5.0], [1.0, 0.0])
-    network.learn([5.0, 6.0], [0.0, 1.0])
+    beside = np.array([[1.3, 0.2], [-0.3, -1.4]])
+    network.learn_many(beside, [[1.0, 0.0], [0.0, 1.0]])
     network.prune(0.0)
     assert network._learner.n_neurons == old + 2
     K = prior(network) / 0.01
     imitation = np.linalg.solve(K[:old, :old], K[:old, old:])
     T = np.concatenate([np.eye(old), imitation], axis=1)
-    far = responses(network, np.array([[5.0, 5.0], [5.0, 6.0]]))[:, :old]
-    seen = before + far.T @ far  # the two samples, of which the old neurons see next to nothing
+    assert (np.abs(imitation).max(axis=0) > 0.2).all()
+    o = responses(network, beside)[:, :old]
+    seen = before + o.T @ o
     np.testing.assert_allclose(information(network) - prior(network), T.T @ seen @ T, atol=1e-8)
 
 

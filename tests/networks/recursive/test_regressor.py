@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from sklearn.utils.estimator_checks import parametrize_with_checks
+from tests.networks.samples import fewer
 
 from handeye.errors import InvalidInput
 from handeye.networks import InputSpace
@@ -12,8 +13,10 @@ from handeye.networks.recursive.regressor import RecursiveRegressor
 
 @parametrize_with_checks(
     [
-        RecursiveRegressor(capacity=60, relevance_samples=60),
-        RecursiveRegressor(capacity=30, relevance_samples=None, random_state=0, epochs=2),
+        RecursiveRegressor(capacity=fewer(60, 20), relevance_samples=fewer(60, 30)),
+        RecursiveRegressor(
+            capacity=fewer(30, 15), relevance_samples=None, random_state=0, epochs=2
+        ),
     ]
 )
 def test_scikit_learn_conventions(estimator, check):
@@ -57,8 +60,8 @@ def test_few_samples_are_enough_to_find_scales_and_noise(data):
 
 def test_partial_fit_continues_where_fit_stopped(data):
     x, y = data
-    whole = RecursiveRegressor(relevance_samples=100).fit(x, y)
-    parts = RecursiveRegressor(relevance_samples=100).partial_fit(x, y)
+    whole = RecursiveRegressor(capacity=40, relevance_samples=100).fit(x, y)
+    parts = RecursiveRegressor(capacity=40, relevance_samples=100).partial_fit(x, y)
     np.testing.assert_array_equal(whole.predict(x), parts.predict(x))
     parts.partial_fit(x[:50], y[:50])
     assert parts.network_.trials == 350

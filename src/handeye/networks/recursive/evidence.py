@@ -12,6 +12,11 @@ from handeye.arrays import Array
 _STEPS = 40
 _LEAST_NOISE = 1e-5
 
+# Chosen on five streams of 4,000 to 10,000 samples: on two, scales still shorter were better, on
+# two worse.
+_FACTORS: Array = np.geomspace(0.75, 1.2, 5)
+_NEGLIGIBLE = 1e-3
+
 
 class Relevance(NamedTuple):
     """Scales (d,) of the inputs, prior variance (m,) of the function and variance of the noise."""
@@ -52,6 +57,29 @@ def relevance(x: Array, targets: Array) -> Relevance:
     )  # fmt: skip
     noise, amplitude = np.exp(found.x[d:])
     return Relevance(np.exp(found.x[:d]) * spread, amplitude * size**2, noise * size**2)
+
+
+def fitting_factor(points: Array, noise_ratio: float, nugget: float) -> float:
+    """By how much scales are multiplied, so that neurons suffice and none is wasted.
+
+    Scales that explain a few samples best are too long for the many that follow, which show finer
+    detail, where neurons can represent it, and too short where they cannot. What the other points
+    (N, d), in scales, do not represent of the prior at one of them is `1 / (C^-1)_jj`, C their
+    covariance with the nugget on the diagonal (leave-one-out: Sundararajan and Keerthi 2001). With
+    the factor, between 0.75 and 1.2, its mean is the noise ratio, or a thousandth if that is more:
+    so little does not matter beside what is still to be learned. O(N^3).
+    """
+    norms = (points**2).sum(axis=1)
+    z = np.maximum(norms[:, np.newaxis] + norms - 2.0 * points @ points.T, 0.0)
+    missing = np.empty(len(_FACTORS))
+    for i, factor in enumerate(_FACTORS):
+        covariance = np.exp((-0.5 / factor**2) * z)
+        np.einsum("ii->i", covariance)[...] = 1.0 + nugget
+        inverse = np.asarray(dpotri(dpotrf(covariance, lower=1)[0], lower=1)[0])
+        missing[i] = (1.0 / np.diag(inverse)).mean()
+    level = float(np.log(max(noise_ratio, _NEGLIGIBLE)))
+    # It falls as scales grow.
+    return float(np.exp(np.interp(level, np.log(missing[::-1]), np.log(_FACTORS[::-1]))))
 
 
 def _cost(logs: Array, x: Array, outputs: Array, usual: float) -> tuple[float, Array]:

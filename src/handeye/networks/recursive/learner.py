@@ -13,6 +13,7 @@ from handeye.networks.recursive.posterior import (
     current_weights,
     empty_posterior,
     novel,
+    prior_factor,
     refactor,
     unrepresented,
     with_block,
@@ -170,8 +171,9 @@ class Learner:
                 self.posterior = with_block(self.posterior)
                 continue
             some, points = points[:free], points[free:]
-            some = some[novel(self.posterior, self.settings, block, some)]
-            add_neurons(self.posterior, self.settings, block, some)
+            factor = prior_factor(self.posterior, block)
+            some = some[novel(self.posterior, self.settings, block, some, factor)]
+            add_neurons(self.posterior, self.settings, block, some, factor)
         self.waiting = 0
         refactor(self.posterior)
         return removed

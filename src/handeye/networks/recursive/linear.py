@@ -5,17 +5,17 @@ at once is, to the bit, the stream learned one by one.
 """
 
 import numpy as np
-from scipy.linalg import cholesky, solve_triangular
-from scipy.linalg.blas import dsyrk
-from scipy.linalg.lapack import dpotrf
+from scipy.linalg import cholesky
+from scipy.linalg.blas import dsymm, dsyrk
+from scipy.linalg.lapack import dpotrf, dtrtrs
 
-from handeye._compiled import compiled
+from handeye._compiled import compiled, compiled_sums
 from handeye.arrays import Array
 
 DEPTH = 8
 """Rows of a factor taken off at a time: what is left is then read and written once for all."""
 
-PANEL = 64
+PANEL = 128
 """Most rows solved together: the factor is then read from memory once for all of them."""
 
 _TILE = 256  # so many numbers of each row of the factor stay in the first-level cache for all rows
@@ -136,7 +136,7 @@ def substitute(factor: Array, start: int, stop: int, rows: Array) -> None:
             subtract(factor, k, end, end, stop, rows, rows)
 
 
-@compiled
+@compiled_sums
 def squared_norm(row: Array, n: int) -> float:
     """|row[:n]|^2."""
     total = 0.0
@@ -145,14 +145,17 @@ def squared_norm(row: Array, n: int) -> float:
     return total
 
 
+# LAPACK and BLAS count columns first: to them a matrix is its transpose, and upper is lower.
+
+
 def back_substituted(factor: Array, columns: Array) -> Array:
     """`U^-1 c` for every column c of (n, m), U the upper triangle of factor (n, n)."""
-    return np.asarray(solve_triangular(factor, columns, check_finite=False))
+    return np.asarray(dtrtrs(factor.T, columns, lower=1, trans=1)[0])
 
 
 def whitened(factor: Array, columns: Array) -> Array:
     """`U^-T c` for every column c of (n, m)."""
-    return np.asarray(solve_triangular(factor, columns, trans=1, check_finite=False))
+    return np.asarray(dtrtrs(factor.T, columns, lower=1)[0])
 
 
 def upper_factor(matrix: Array) -> Array:
@@ -165,7 +168,6 @@ def upper_factor(matrix: Array) -> Array:
 
 def factorize(matrix: Array) -> bool:
     """The same in the place of the matrix, whose lower triangle becomes anything; False if not."""
-    # LAPACK counts columns first: to it this is the transpose, and upper is lower.
     factor, failed = dpotrf(matrix.T, lower=1, clean=0, overwrite_a=1)
     if not np.shares_memory(factor, matrix):
         matrix[...] = factor.T
@@ -174,10 +176,14 @@ def factorize(matrix: Array) -> bool:
 
 def add_squares(matrix: Array, rows: Array, keep: float) -> None:
     """The upper triangle of matrix (n, n), in place, becomes keep times itself plus rows^T rows."""
-    # BLAS counts columns first: to it both arrays are their transposes, and upper is lower.
     out = dsyrk(1.0, rows.T, beta=keep, c=matrix.T, lower=1, overwrite_c=1)
     if not np.shares_memory(out, matrix):
         matrix[...] = out.T
+
+
+def symmetric_product(matrix: Array, columns: Array) -> Array:
+    """A symmetric matrix (n, n), of which the upper triangle is read, times columns (n, m)."""
+    return np.asarray(dsymm(1.0, matrix.T, columns, lower=1))
 
 
 def symmetric(matrix: Array) -> Array:

@@ -11,8 +11,9 @@ from handeye.io.tensors import Parts
 from handeye.networks.checked import CheckedLearner
 from handeye.networks.inputs import InputSpace
 from handeye.networks.outcomes import LearnedMany
-from handeye.networks.recursive.evidence import relevance
+from handeye.networks.recursive.evidence import fitting_factor, relevance
 from handeye.networks.recursive.learner import Learner
+from handeye.networks.recursive.posterior import NUGGET
 from handeye.networks.recursive.storage import learner_parts, restore_learner
 from handeye.networks.recursive.units import Settings
 from handeye.networks.units import moderate
@@ -36,8 +37,8 @@ class RecursiveNetwork(CheckedLearner):
       covariance of their errors, which is exact: every error and every prediction is that of the
       recursion sample by sample. A new neuron starts from weight zero and answers from the next
       consolidation on, if neither the others nor those that came with it represent it.
-    - The scales are those that make the first samples most probable; then these are learned anew by
-      neurons that are all there from the beginning.
+    - The scales are those that make the first samples most probable, times what `fitting_factor`
+      finds; then these samples are learned anew by neurons that are there from the beginning.
 
     A sample costs `n (b + q) / 2` multiplications for n neurons in blocks of b, q samples pending,
     and consolidations about as much again.
@@ -197,7 +198,9 @@ class RecursiveNetwork(CheckedLearner):
         """Estimate scales and noise from the first samples, and learn these anew."""
         inputs, targets = np.split(self._first, [self.n_inputs], axis=1)
         found = relevance(inputs, targets)
-        self._scales, self._first = found.scales, self._first[:0]
+        self._first = self._first[:0]
+        neurons = inputs[: self.capacity] / found.scales
+        self._scales = found.scales * fitting_factor(neurons, found.noise_ratio, NUGGET)
         settings = self.settings._replace(noise_ratio=found.noise_ratio)
         self._learner = Learner(self.n_inputs, self.n_outputs, self.capacity, settings)
         # A neuron that comes later knows of earlier samples only what others tell it.

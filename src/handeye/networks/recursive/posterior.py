@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg.lapack import dpstrf
 
 from handeye._compiled import compiled
 from handeye.arrays import Array, Integers
@@ -11,7 +12,7 @@ from handeye.networks.recursive.linear import (
     add_squares,
     back_substituted,
     factorize,
-    symmetric,
+    symmetric_product,
     upper_factor,
     whitened,
 )
@@ -24,7 +25,9 @@ from handeye.networks.recursive.units import (
 )
 from handeye.networks.responses import Gaussian, respond
 
-_NUGGET = 1e-6  # added to a neuron's own overlap: neighbours may then be as close as they like
+NUGGET = 1e-6
+"""Added to a neuron's own overlap: neighbours may then be as close as they like."""
+
 _ROUNDING = 1e-16  # of the largest information times the neurons: below lies only rounding
 
 
@@ -100,46 +103,54 @@ def refactor(posterior: Posterior) -> None:
                 break
 
 
-def novel(posterior: Posterior, settings: Settings, b: int, points: Array) -> Integers:
+def prior_factor(posterior: Posterior, b: int) -> Array:
+    """U of block b's prior, `prior = U^T U`; what is below the diagonal is anything."""
+    n = posterior.units.counts[b]
+    factor = posterior.prior[b, :n, :n].copy()
+    if n:
+        factorize(factor)
+    return factor
+
+
+def novel(
+    posterior: Posterior, settings: Settings, b: int, points: Array, factor: Array
+) -> Integers:
     """Which of the points (N, d) neither the neurons of block b nor each other represent.
 
     That of which most is missing, `1 - k^T K^-1 k`, is taken first, until no more than the novelty
     times the noise ratio is missing of any: what a neuron there could add to the outputs is then
     far below the noise (Csato and Opper 2002; Engel, Mannor and Meir 2004). Returned in order.
+    Factor is that of the block's prior.
     """
-    n = posterior.units.counts[b]
-    columns = np.empty((n + len(points), len(points)))
-    missing = np.full(len(points), 1.0 + _NUGGET)
+    n = len(factor)
+    left = np.empty((len(points), len(points)))
+    overlap_stream(np.ascontiguousarray(points.T), points, left)
+    np.einsum("ii->i", left)[...] += NUGGET
     if n:
         overlaps = np.empty((len(points), n))
         overlap_stream(posterior.units.centers[b, :, :n], points, overlaps)
-        factor = upper_factor(posterior.prior[b, :n, :n])
-        columns[:n] = np.sqrt(settings.noise_ratio) * whitened(factor, overlaps.T)
-        missing -= (columns[:n] ** 2).sum(axis=0)
-    among = np.empty((len(points), len(points)))
-    overlap_stream(np.ascontiguousarray(points.T), points, among)
-    chosen: list[int] = []
-    while len(chosen) < len(points):
-        most = int(np.argmax(missing))
-        if missing[most] <= _NUGGET + settings.novelty * settings.noise_ratio:
-            break
-        known = columns[: n + len(chosen)]
-        column = (among[most] - known[:, most] @ known) / np.sqrt(missing[most])
-        columns[n + len(chosen)] = column
-        missing -= column**2
-        missing[most] = 0.0
-        chosen.append(most)
-    return np.sort(np.array(chosen, np.int64))
+        known = whitened(factor, overlaps.T)
+        left -= settings.noise_ratio * (known.T @ known)
+    least = NUGGET + settings.novelty * settings.noise_ratio
+    if left.diagonal().max() <= least:
+        return np.empty(0, np.int64)
+    # LAPACK's factor with the largest pivot first, until that is no more than this.
+    _, order, rank, _ = dpstrf(left, tol=least)
+    return np.sort(order[:rank]) - 1
 
 
-def add_neurons(posterior: Posterior, settings: Settings, b: int, points: Array) -> None:
+def add_neurons(
+    posterior: Posterior, settings: Settings, b: int, points: Array, factor: Array
+) -> None:
     """Add neurons of weight zero at points (N, d) to block b, which has room for them.
 
     What was learned before they came is known of the old neurons alone. A new one answers old
     samples as the old neurons together best imitate it, `a = K^-1 k`, so its information is that of
     its imitation (Csato and Opper 2002, eq 11); without it the old neurons would be certain of
-    having explained alone what the new one is for.
+    having explained alone what the new one is for. Factor is that of the block's prior before.
     """
+    if len(points) == 0:
+        return
     units = posterior.units
     old, new = units.counts[b], units.counts[b] + len(points)
     units.centers[b, :, old:new] = points.T
@@ -148,21 +159,16 @@ def add_neurons(posterior: Posterior, settings: Settings, b: int, points: Array)
     overlap_stream(units.centers[b, :, :new], points, overlaps)
     posterior.prior[b, :new, old:new] = settings.noise_ratio * overlaps.T
     diagonal = np.einsum("ii->i", posterior.prior[b, old:new, old:new])
-    diagonal += settings.noise_ratio * _NUGGET
+    diagonal += settings.noise_ratio * NUGGET
     information = posterior.information[b]
     information[:new, old:new] = 0.0
     if old:
-        imitation = prior_imitation(posterior, b, old, posterior.prior[b, :old, old:new])
-        seen = symmetric(information[:old, :old]) @ imitation
+        columns = posterior.prior[b, :old, old:new]
+        imitation = back_substituted(factor, whitened(factor, columns))
+        seen = symmetric_product(information[:old, :old], imitation)
         information[:old, old:new] = seen
         information[old:new, old:new] = imitation.T @ seen
     units.counts[b] = new
-
-
-def prior_imitation(posterior: Posterior, b: int, n: int, columns: Array) -> Array:
-    """`K^-1 k` of columns k (n, N), both times the noise ratio, for the first n neurons."""
-    factor = upper_factor(posterior.prior[b, :n, :n])
-    return back_substituted(factor, whitened(factor, columns))
 
 
 @compiled
@@ -184,8 +190,8 @@ def unrepresented(posterior: Posterior, inputs: Array) -> Array:
         if n:
             overlaps = np.empty((len(inputs), n))
             overlap_stream(units.centers[b, :, :n], inputs, overlaps)
-            factor = upper_factor(posterior.prior[b, :n, :n])
-            ratio = posterior.prior[b, 0, 0] / (1.0 + _NUGGET)
+            factor = prior_factor(posterior, b)
+            ratio = posterior.prior[b, 0, 0] / (1.0 + NUGGET)
             covered = ratio * (whitened(factor, overlaps.T) ** 2).sum(axis=0)
             least = np.minimum(least, 1.0 - covered)
     return np.clip(least, 0.0, 1.0)
