@@ -15,6 +15,7 @@ from handeye.calibration.expected import (
     expected_at,
     expected_at_rows,
     expected_summary,
+    stretch,
     workspace,
 )
 from handeye.calibration.influence import influence
@@ -125,6 +126,26 @@ def test_the_workspace_keeps_limits_and_knows_where_the_robot_worked():
     np.testing.assert_array_equal(space.expected, expected)
     marker = learned.model.placement.T_flange_marker[:, 3]
     np.testing.assert_allclose(space.seen, (arm.poses(seen.joints) @ marker)[:, :3])
+
+
+def test_what_is_expected_is_stretched_where_held_out_rows_err_more():
+    rng, rows = np.random.default_rng(8), np.arange(600)
+    errors = rng.normal(scale=1e-3, size=(600, 3))
+
+    def held(times):
+        expected = np.full(600, np.sqrt(3.0) * 1e-3 / times)
+        return HeldOut(rows, errors, errors, rows, expected=expected)
+
+    assert stretch(held(2.5)) == pytest.approx(2.5, rel=0.06)
+    assert stretch(held(0.5)) == stretch(None) == 1.0
+    wild = errors.copy()
+    wild[:60] *= 100.0
+    assert stretch(replace(held(2.5), after=wild)) < 1.15 * 2.5
+    seen = sightings(model(), errors_of(model()), 50)
+    plain, wider = (workspace(taught(), seen, 40, held=one) for one in (None, held(2.5)))
+    assert plain is not None
+    assert wider is not None
+    np.testing.assert_allclose(wider.expected, stretch(held(2.5)) * plain.expected)
 
 
 def test_who_does_not_know_says_nothing():

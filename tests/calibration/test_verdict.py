@@ -13,7 +13,7 @@ from handeye.calibration.drift import Thermal
 from handeye.calibration.influence import influence
 from handeye.calibration.log_run import calibrate_log
 from handeye.calibration.placed import Method
-from handeye.calibration.results import CalibrationResult, HeldOut
+from handeye.calibration.results import CalibrationResult, HeldOut, Influence
 from handeye.calibration.verdict import verdict
 from handeye.io.records import Log
 from handeye.thesis.plants import NOMINAL
@@ -51,6 +51,31 @@ def test_held_out_rows_count_where_the_robot_stood_still():
     assert judged.advice == (
         "trust the held-out rows: each was predicted from the other blocks of time alone"
     )
+
+
+def test_wild_rows_are_counted_apart_where_they_decide_the_mean():
+    held = run().held_out
+    assert held is not None
+    after, wild = held.after.copy(), np.zeros(N, np.bool_)
+    wild[[3, 50, 60]] = True
+    after[wild] = 90.0
+    pulled = Influence(np.zeros(N), np.zeros(N), wild)
+    spoilt = replace(held, after=after)
+    advice = verdict(run(held_out=spoilt, influence=pulled)).advice
+    assert advice.endswith(
+        "3 of these rows are not believed; the mean error of the others is 2e+03 mm"
+    )
+    # Where they decide nothing, nothing is said.
+    assert "believed" not in verdict(run(influence=pulled)).advice
+    assert "believed" not in verdict(run(held_out=spoilt)).advice
+
+
+def test_what_is_wrong_with_the_log_comes_first():
+    advice = verdict(run(suspects=("joint a seems to have the other sign",))).advice
+    assert advice.startswith(
+        "the log does not fit this arm: joint a seems to have the other sign; correct it and "
+    )
+    assert "trust the held-out rows" in advice
 
 
 def test_after_a_change_its_row_is_named():

@@ -153,3 +153,13 @@ def test_bad_tables_and_places_are_explained(tmp_path, scene):
     assert not (tmp_path / "no").exists()
     few = write(tmp_path / "few.csv", A[:2], B[:2])
     assert "at least 3 poses" in refused("hand-eye", few)
+
+
+def test_a_table_that_was_meant_in_another_way_is_explained(tmp_path, scene):
+    _, _, A, B = scene
+    names = [*NAMES[:3], "qx", "qy", "qz", "qw"]
+    header = [prefix + name for prefix in ("flange_", "target_") for name in names]
+    said = done("hand-eye", write(tmp_path / "p.csv", A, B, header)).stdout
+    assert "the quaternions of flange and target were read as x, y, z, w but are w, x, y, z" in said
+    said = done("hand-eye", write(tmp_path / "p.csv", A[[0] * 6], B[[0] * 6])).stdout
+    assert "the flange does not turn: add poses" in said

@@ -244,3 +244,12 @@ NAN = np.full((N, 3), np.nan)
 def test_what_cannot_be_drawn_is_refused_with_its_name(draw, complaint):
     with pytest.raises(InvalidInput, match=complaint):
         draw()
+
+
+def test_readings_of_sliding_joints_are_in_millimetres():
+    errors = np.ones((len(JOINTS), 3)) * 1e-3
+    figure = residuals_by_joint(("rail", "tilt"), JOINTS, errors, errors, sliding=("rail",))
+    rail, tilt = figure.axes[:2]
+    assert (rail.get_xlabel(), tilt.get_xlabel()) == ("Position [mm]", "Angle [°]")
+    drawn = np.concatenate([line.get_xdata() for line in rail.lines if line.get_marker() == "o"])
+    assert drawn.max() == pytest.approx(1e3 * JOINTS[:, 0].max(), rel=0.1)

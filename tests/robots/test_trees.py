@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.robots.made import FOUR, TORSO, joint, robot
 
-from handeye.errors import InvalidInput
+from handeye.errors import FileFormatError, InvalidInput
 from handeye.geometry import invert, make_pose
 from handeye.io.urdf_origins import corrected_urdf
 from handeye.robots.stages import Stages
@@ -168,3 +168,36 @@ def test_joints_of_several_freedoms_are_refused_on_the_way_only(kind):
     # From a link that drives along, the drive does not matter.
     assert UrdfArm.from_text(text, "hand", "rover", "base").joint_names == ("lift", "turn")
     assert UrdfArm.from_text(text, "hand", "rover", "head").joint_names == ("pan", "lift", "turn")
+
+
+def test_another_chain_through_the_same_robot():
+    left = torso("left_hand")
+    assert (left.base, torso("left_hand", "camera").base) == ("base", "camera")
+    seen = left.between("right_hand", "camera")
+    q = np.random.default_rng(9).uniform(-1.0, 1.0, (3, 7))
+    np.testing.assert_array_equal(seen.poses(q), torso("right_hand", "camera").poses(q))
+    assert (seen.tip, seen.base, seen.name) == ("right_hand", "camera", "torso")
+    assert seen.between(eye="torso").joint_names == tuple(f"right_{i}" for i in range(1, 6))
+    assert left.between() is left
+    assert left.between("left_hand", "base") is left
+    with pytest.raises(InvalidInput, match="no joint moves the link 'camera' against 'head'"):
+        left.between("camera", "head")
+    with pytest.raises(InvalidInput, match="torso has no link 'right_hnd': choose one of right_ha"):
+        left.between("right_hnd")
+
+
+@pytest.mark.parametrize(("tip", "eye"), ENDS)
+def test_branches_lead_from_the_fork_to_both_ends(tip, eye):
+    arm = torso(tip, eye)
+    n = arm.stages().upwards
+    q = np.random.default_rng(10).uniform(-1.0, 1.0, (3, len(arm.joint_names)))
+    base, end = arm.branches()
+    assert (len(base.slides), base.upwards, end.upwards) == (n, 0, 0)
+    apart = invert(base.poses(q[:, :n][:, ::-1])) @ end.poses(q[:, n:])
+    np.testing.assert_allclose(apart, arm.poses(q), atol=1e-12)
+
+
+def test_links_that_no_joint_connects_are_no_robot():
+    stray = TORSO.replace("</robot>", '<link name="table"/></robot>')
+    with pytest.raises(FileFormatError, match="no joint connects base and table: connect them"):
+        UrdfArm.from_text(stray, "left_hand", "torso")

@@ -6,9 +6,11 @@ import numpy as np
 
 from handeye.arrays import Integers
 from handeye.calibration.arm.log_system import Jump
-from handeye.calibration.combined import Combined
+from handeye.calibration.combined import Combined, Event
+from handeye.calibration.hindsight import look_back
+from handeye.calibration.placed_arm import PlacedArm
 from handeye.calibration.session import AnyCalibrator
-from handeye.observations import Observation
+from handeye.observations import Observation, PointObservation
 
 # How much farther the robot as it is now errs on rows from before a change that matters.
 _MATTERS = 2.0
@@ -22,11 +24,13 @@ class History(NamedTuple):
     since  the first row since the last change that matters; 0 if there is none
     first  the first row that tells anything of the robot as it is now
     jumps  parts that were others before a row, from `first` on
+    events the same for a person
     """
 
     since: int = 0
     first: int = 0
     jumps: tuple[Jump, ...] = ()
+    events: tuple[Event, ...] = ()
 
     def of(self, rows: Integers) -> tuple[Jump, ...]:
         """The jumps where rows (M,), rising and none before `first`, are all there is."""
@@ -42,8 +46,9 @@ def history(calibrator: AnyCalibrator, seen: Observation) -> History:
 
     A change matters if the robot as it was learned errs more than twice as far before it as after.
     """
-    events = calibrator.events if isinstance(calibrator, Combined) else ()
-    since = max((e.observation for e in events if e.kind in {"change", "lost"}), default=0)
+    told = calibrator.events if isinstance(calibrator, Combined) else ()
+    events = tuple(e for e in told if e.kind in {"change", "lost"})
+    since = max((e.observation for e in events), default=0)
     if not since or not isinstance(calibrator, Combined):
         return History()
     lengths = np.linalg.norm(calibrator.errors(seen), axis=1)
@@ -56,7 +61,18 @@ def history(calibrator: AnyCalibrator, seen: Observation) -> History:
         for e in events
         if e.kind == "change" and e.observation > first and e.part in places
     ]
-    return History(since, first, tuple(jumps[-_MOST:]))
+    return History(since, first, tuple(jumps[-_MOST:]), events)
+
+
+def in_hindsight(live: History, model: PlacedArm, seen: PointObservation) -> History:
+    """What became of an arm as all its rows show it, or, if they show nothing, as it was noticed.
+
+    Only all rows tell of a change in the first ones, and where exactly a change was.
+    """
+    found = look_back(model, seen)
+    if not found.jumps:
+        return live
+    return History(found.jumps[-1].at, 0, found.jumps, found.events)
 
 
 def drifts(calibrator: AnyCalibrator) -> bool:

@@ -7,7 +7,8 @@ import numpy as np
 from handeye.arrays import Array
 from handeye.calibration.results import CalibrationResult, ErrorSummary
 
-_LEARNED = {"network": "network", "combined": "all that was learned", "estimator": "parameters"}
+_ALL = "all that was learned"
+_LEARNED = {"network": "network", "estimator": "parameters"}
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,7 @@ def contributions(result: CalibrationResult) -> tuple[Contribution, ...]:
     found = [with_part("placement", held.before, held.turns_before)]
     if result.method == "nominal":
         return tuple(found)
-    last = _LEARNED[result.method]
+    last = _LEARNED.get(result.method, _ALL)
     if held.rigid is not None:
         found.append(with_part("geometry", held.rigid, held.turns_rigid))
         last = "error curves"

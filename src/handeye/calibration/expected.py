@@ -19,11 +19,12 @@ from handeye.arrays import Array
 from handeye.calibration.arm import ArmEstimator
 from handeye.calibration.arm.log_system import misfits
 from handeye.calibration.arm.residuals import measured_at
+from handeye.calibration.arm.student import OF_NORMAL
 from handeye.calibration.combined import Combined
 from handeye.calibration.engine.chain import reach
-from handeye.calibration.engine.design import hand_spreads_of
+from handeye.calibration.engine.design import spreads
 from handeye.calibration.placed_arm import PlacedArm
-from handeye.calibration.results import CalibrationResult, Workspace
+from handeye.calibration.results import CalibrationResult, HeldOut, Workspace
 from handeye.observations import Observation
 from handeye.randomness import stream
 from handeye.robots.urdf import UrdfArm
@@ -35,6 +36,7 @@ _SHOWN = 400
 _CHUNK = 256
 # Errors of nineteen rows in twenty stay below.
 _MOST = 0.95
+_LEAST = 1e-9
 
 
 def expected_at_rows(calibrator: Any, seen: Observation) -> Array | None:
@@ -79,11 +81,25 @@ def expected_summary(result: CalibrationResult) -> dict[str, dict[str, float]]:
             "found_rms": _rms(found),
             "within": float(np.mean(found <= most * held.expected)),
         }
+        out["held_out"]["stretch"] = stretch(held)
     if space is not None:
         for name, which in (("working_range", space.worked), ("elsewhere", ~space.worked)):
             if which.any():
                 out[name] = _sizes(space.expected[which])
     return out
+
+
+def stretch(held: HeldOut | None) -> float:
+    """How many times farther off held-out rows are than was expected of them, at least 1.
+
+    By the median of |e|^2 / expected^2 over that of chi^2(k) / k, so that wild rows do not count:
+    rows of another time show errors that the rows that were learned could not tell of.
+    """
+    if held is None or held.expected is None or not len(held.rows):
+        return 1.0
+    k = held.after.shape[1]
+    ratio = np.sum(held.after**2, axis=1) / np.maximum(held.expected, _LEAST) ** 2
+    return max(float(np.sqrt(np.median(ratio) * k / chi2.median(k))), 1.0)
 
 
 def _sizes(expected: Array) -> dict[str, float]:
@@ -96,10 +112,13 @@ def _rms(lengths: Array) -> float:
     return float(np.sqrt(np.mean(lengths**2)))
 
 
-def workspace(calibrator: Any, seen: Observation, n: int = _LOOKS) -> Workspace | None:
+def workspace(
+    calibrator: Any, seen: Observation, n: int = _LOOKS, *, held: HeldOut | None = None
+) -> Workspace | None:
     """Poses all over the limits of an arm's joints, half of them where the joints have worked.
 
-    None as `expected_at`, or without any row.
+    What is expected there is stretched as `held` rows call for. None as `expected_at`, or without
+    any row.
     """
     model: Any = getattr(calibrator, "model", None)
     if not isinstance(model, PlacedArm) or not isinstance(model.arm, UrdfArm) or not len(seen):
@@ -116,6 +135,7 @@ def workspace(calibrator: Any, seen: Observation, n: int = _LOOKS) -> Workspace 
         return None
     worked = np.all((joints >= near[0]) & (joints <= near[1]), axis=1)
     rows = seen.joints[:: -(-len(seen) // _SHOWN)]
+    expected = stretch(held) * expected
     return Workspace(joints, _marker(model, joints), expected, worked, _marker(model, rows))
 
 
@@ -128,13 +148,11 @@ def _expected(calibrator: Combined | ArmEstimator, rows: Array) -> Array:
     if isinstance(calibrator, ArmEstimator):
         return _of_estimator(calibrator, rows)
     engine, chain = calibrator.engine, calibrator.engine.chain
-    m, k, n = chain.n_hand, chain.n_values, len(engine.x)
+    m, k = chain.n_hand, chain.n_values
     squares = np.empty(len(rows))
     for first in range(0, len(rows), _CHUNK):
         some = rows[first : first + _CHUNK]
-        spread, noise = np.empty((len(some), m, n)), np.empty((len(some), m, k))
-        known = (chain.kernel, engine.rules, engine.bank, engine.flexible(), engine.doubt)
-        hand_spreads_of(*known, some, spread)
+        spread, noise = spreads(engine, some, hand=True), np.empty((len(some), m, k))
         noises(chain.kernel, engine.x, some, engine.doubt, noise)
         part = slice(first, first + len(some))
         squares[part] = np.sum(spread**2, axis=(1, 2)) + np.sum(noise**2, axis=(1, 2))
@@ -151,7 +169,7 @@ def _of_estimator(calibrator: ArmEstimator, rows: Array) -> Array:
     J = by[:, :3].reshape(-1, len(tolerance)) * tolerance
     half = solve_triangular(found.root, J.T, lower=True)
     known = np.sum(half**2, axis=0).reshape(-1, 3)
-    stated = rows[:, at : at + 3] ** 2 + found.noise[0] ** 2
+    stated = rows[:, at : at + 3] ** 2 + (found.noise[0] / OF_NORMAL) ** 2
     return np.sqrt(np.sum(known + stated, axis=1))
 
 

@@ -2,11 +2,10 @@
 
 from collections.abc import Mapping
 from typing import Any
-from xml.etree import ElementTree
 
 import numpy as np
 
-from handeye.calibration.arm.corrected import CorrectedArm
+from handeye.calibration.arm.corrected import CorrectedJoints
 from handeye.calibration.arm.measurements import PixelSightings
 from handeye.calibration.combined import Combined
 from handeye.calibration.placed_arm import PlacedArm
@@ -36,9 +35,8 @@ def calibrated_urdf(calibrator: AnyCalibrator | MixedFit) -> str:
     Raises:
         InvalidInput: a calibrator that has not learned an arm from a URDF file.
     """
-    arm, fixed = _arm(calibrator)
-    departures = arm.stages().departures(fixed.stages)
-    return corrected_urdf(arm.urdf, arm.stage_names, departures)
+    urdf, joints = _joints(calibrator)
+    return corrected_urdf(urdf, joints.names, joints.departures)
 
 
 def calibrated_joints_yaml(calibrator: AnyCalibrator | MixedFit) -> str:
@@ -48,16 +46,15 @@ def calibrated_joints_yaml(calibrator: AnyCalibrator | MixedFit) -> str:
         InvalidInput: as `calibrated_urdf`.
         MissingExtra: without PyYAML.
     """
-    arm, _ = _arm(calibrator)
-    names = arm.stage_names
+    names = _joints(calibrator)[1].names
     return joint_origins_yaml(names, joint_origins(calibrated_urdf(calibrator), names))
 
 
 def not_in_urdf(calibrator: AnyCalibrator | MixedFit) -> tuple[str, ...]:
     """What was learned of an arm and cannot be stated in a URDF file, in words."""
-    arm, fixed = _arm(calibrator)
+    _, joints = _joints(calibrator)
     out: list[str] = []
-    for name, scale, give in zip(arm.stage_names, fixed.scales, fixed.compliances, strict=True):
+    for name, scale, give in zip(joints.names, joints.scales, joints.compliances, strict=True):
         if abs(scale - 1.0) > _NONE:
             out.append(f"{name}: scale {scale:.6f}")
         if give > _NONE:
@@ -89,21 +86,21 @@ def camera_infos(fit: MixedFit, sizes: Mapping[str, tuple[int, int]]) -> dict[st
 def hand_eyes(fit: MixedFit) -> dict[str, str]:
     """Where each camera or other sensor of a set-up is, as easy_handeye2 stores it, by name.
 
-    In the frame of the base or of the flange as they were found: publish it with the corrected
-    URDF. Frames have the names of the URDF; the sensor's own has the name of the sensor.
+    In the frame of the link that carries it, as it was found: publish it with the corrected URDF.
+    Frames have the names of the URDF; the sensor's own has the name of the sensor.
 
     Raises:
         MissingExtra: without PyYAML.
     """
     arm = fit.problem.arm
-    base = arm.eye or _root(arm.urdf)
     out: dict[str, str] = {}
     for one in fit.measurements:
         if looks(one):
             sensor, seen = one.sight.sensor, one.sight.target
             target = seen.name if seen.free.any() else one.sight.points.name
             eye = _plain(sensor.name)
-            frames = HandEyeFrames(eye, base, arm.tip, eye, _plain(target))
+            ends = one.base or arm.base, one.link or arm.tip
+            frames = HandEyeFrames(eye, *ends, eye, _plain(target))
             out[sensor.name] = hand_eye_yaml(one.sight.setup, sensor.reference, frames)
     return out
 
@@ -113,24 +110,19 @@ def _plain(name: str) -> str:
     return "_".join(name.split())
 
 
-def _root(urdf: str) -> str:
-    """The link that is no joint's child."""
-    tree = ElementTree.fromstring(urdf)
-    children = {child.get("link") for child in tree.iterfind("joint/child")}
-    names = [link.get("name", "") for link in tree.iterfind("link")]
-    return next(name for name in names if name not in children)
-
-
-def _arm(calibrator: AnyCalibrator | MixedFit) -> tuple[UrdfArm, CorrectedArm]:
+def _joints(calibrator: AnyCalibrator | MixedFit) -> tuple[str, CorrectedJoints]:
+    """The text of the nominal URDF, and the joints as found."""
     if isinstance(calibrator, MixedFit):
-        return calibrator.problem.arm, calibrator.corrected
+        return calibrator.problem.arm.urdf, calibrator.corrected
     model: Any = getattr(calibrator, "model", None)
     if (
         isinstance(calibrator, Combined)
         and isinstance(model, PlacedArm)
         and isinstance(model.arm, UrdfArm)
     ):
-        return model.arm, calibrator.plant
+        arm = model.arm
+        found = CorrectedJoints.of_arm(arm.stage_names, arm.stages(), calibrator.plant)
+        return arm.urdf, found
     raise InvalidInput(
         "only an arm from a URDF file that was calibrated with the method combined, or from a "
         "description of a set-up, has corrected joints to write"

@@ -52,10 +52,25 @@ def influence(
     if believed is None and isinstance(calibrator, Combined):
         doubted = [e.observation for e in calibrator.events if e.kind == "outlier"]
         left_out[[i for i in doubted if i < n]] = True
-    expected = expected_at_rows(calibrator, seen)
-    if expected is not None and held is not None and held.expected is not None:
-        expected[held.rows] = held.expected
-    return Influence(residual, times, left_out, expected)
+    return Influence(residual, times, left_out, _surely(calibrator, everything, held))
+
+
+def _surely(calibrator: AnyCalibrator, seen: Any, held: HeldOut | None) -> Array | None:
+    """How far off each row (N,) was expected to be, by who had not seen it where somebody had not.
+
+    None where nobody knows.
+    """
+    if held is None or held.expected is None:
+        return expected_at_rows(calibrator, seen)
+    out = np.empty(len(seen))
+    out[held.rows] = held.expected
+    others = np.setdiff1d(np.arange(len(seen)), held.rows)
+    if len(others):
+        rest = expected_at_rows(calibrator, seen[others])
+        if rest is None:
+            return None
+        out[others] = rest
+    return out
 
 
 def _stated(calibrator: AnyCalibrator, seen: Observation) -> Array:

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from handeye.arrays import Array
-from handeye.calibration.changes import drifts, history
+from handeye.calibration.changes import drifts, history, in_hindsight
 from handeye.calibration.combined import Combined
 from handeye.calibration.expected import workspace
 from handeye.calibration.influence import influence
@@ -24,17 +24,20 @@ from handeye.calibration.planar_placement import eye_points
 from handeye.calibration.plant import PlanarPlant
 from handeye.calibration.results import CalibrationResult, Validation
 from handeye.calibration.session import AnyCalibrator, learn_from_log
+from handeye.calibration.suspects import suspects
 from handeye.calibration.validation import held_out, left_out, to_learn
 from handeye.errors import LogError
 from handeye.io.logs import BadRow, Log
 from handeye.observations import Observation, PointObservation
+from handeye.robots.urdf import UrdfArm
 
 Progress = Callable[[int, int], None]
 """Called with the rows learned so far, and those to learn in all."""
 
 _FEWEST_ROWS = 9
-# A robot that changed so few rows before the end is judged without holding any of them out.
-_FEWEST_SINCE = 25
+# A robot that changed so few rows before the end is judged without holding any of them out; a fit
+# to all rows knows all but what has changed from those before.
+_FEWEST_SINCE, _FEWEST_FITTED = 25, 10
 
 
 def _quiet(done: int, total: int) -> None:
@@ -101,9 +104,13 @@ def calibrate_log(
     online = calibrator_for(model, method)
     tested = learn_from_log(online, seen, after_each=lambda k: progress(k, work))
     run.history = history(online, seen)
+    if run.settles:
+        known: Any = model
+        told: Any = seen
+        run.history = in_hindsight(run.history, known, told)
     since = run.history.since
     parts = left_out(n, validate, replicate=replicate, since=since)
-    if n - since < _FEWEST_SINCE and since:
+    if since and n - since < (_FEWEST_FITTED if run.settles else _FEWEST_SINCE):
         parts = []
     whole, found, believed, done = online, None, None, n
     if run.settles:
@@ -124,7 +131,7 @@ def calibrate_log(
     elif found is not None:
         drifting = False
         whole, held = chosen(found, held)
-        _tell(whole, online)
+        whole.past = run.history.events
     progress(work, work)
     result = CalibrationResult(
         robot=robot_name(robot),
@@ -153,7 +160,9 @@ def calibrate_log(
         parts=parts_of(whole, seen),
         undetermined=undetermined_of(whole),
         influence=influence(whole, seen, held, since=since, believed=believed),
-        workspace=workspace(whole, seen),
+        workspace=workspace(whole, seen, held=held),
+        suspects=_suspects(robot, seen, whole.errors(_rows(seen, since))),
+        sliding=_sliding(robot),
     )
     return Calibration(result, whole, frames)
 
@@ -162,11 +171,17 @@ def _rows(seen: Any, since: int) -> Any:
     return seen[since:]
 
 
-def _tell(whole: AnyCalibrator, online: AnyCalibrator) -> None:
-    """What was noticed in the order of time belongs to the story of the robot."""
-    assert isinstance(whole, Combined)
-    assert isinstance(online, Combined)
-    whole.past = tuple(e for e in online.events if e.kind in {"change", "lost"})
+def _suspects(robot: Robot, seen: Observation, errors: Array) -> tuple[str, ...]:
+    """What is wrong with the log, if it clearly is."""
+    if not isinstance(robot, UrdfArm) or not isinstance(seen, PointObservation):
+        return ()
+    return suspects(robot, seen, float(np.median(np.linalg.norm(errors, axis=1))))
+
+
+def _sliding(robot: Robot) -> tuple[str, ...]:
+    if not isinstance(robot, UrdfArm):
+        return ()
+    return tuple(np.array(robot.joint_names)[robot.sliding].tolist())
 
 
 def _findings(calibrator: AnyCalibrator) -> tuple[str, ...]:

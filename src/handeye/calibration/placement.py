@@ -141,6 +141,16 @@ def estimate_placement(
     )
 
 
+def placement_size(poses: Array, positions: Array, lever: float) -> float:
+    """Half of what base and marker, fitted to flanges at poses (N, 4, 4), leave exceeds this [m].
+
+    lever: the arm's reach [m].
+    """
+    problem = PlacementProblem(poses, positions, np.zeros_like(positions), lever, fixed=False)
+    residuals = problem.residuals(*_best_start(problem, None))
+    return float(np.median(np.linalg.norm(residuals, axis=1)))
+
+
 def _best_start(problem: PlacementProblem, rotations: Array | None) -> tuple[Start, Array]:
     thin = problem.thinned(_ROWS_TO_CHOOSE_START)
     candidates = starts(problem.poses, problem.positions, rotations, fixed=problem.fixed)

@@ -168,6 +168,8 @@ class CalibrationResult:
     drifting            whether it was changing all the time at the end
     times, rows (N,)    time stamps [s], and numbers of the rows in the file
     workspace           how far the hand is expected to miss all over its reach, where known
+    suspects            what seems to be wrong with the log, in words
+    sliding             joints that slide: their readings are in metres
     """
 
     robot: str
@@ -192,6 +194,8 @@ class CalibrationResult:
     undetermined: tuple[str, ...] = ()
     influence: Influence | None = None
     workspace: Workspace | None = None
+    suspects: tuple[str, ...] = ()
+    sliding: tuple[str, ...] = ()
 
     def summary(self) -> dict[str, dict[str, Any]]:
         """The error statistics of every stage, ready for JSON."""

@@ -1,6 +1,6 @@
 """Which rows of a run tell how good its result is, and why those."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -51,6 +51,34 @@ def verdict(result: CalibrationResult) -> Verdict:
     belongs to another robot; then, and where no row was held out, what counts are errors made just
     before a row was learned, in the last third of the run and since the last change.
     """
+    found = _judged(result)
+    wild = _without_wild(result, found)
+    advice = f"{found.advice}. {wild}" if wild else found.advice
+    if result.suspects:
+        mistakes = "; ".join(result.suspects)
+        advice = (
+            f"the log does not fit this arm: {mistakes}; correct it and calibrate again. {advice}"
+        )
+    return replace(found, advice=advice)
+
+
+def _without_wild(result: CalibrationResult, found: Verdict) -> str:
+    """What rows that are not believed do to the mean error, if much."""
+    if result.influence is None:
+        return ""
+    wild = result.influence.left_out[found.rows]
+    if not wild.any() or wild.all():
+        return ""
+    mean, rest = found.summary_after.mean, ErrorSummary.of(found.after[~wild]).mean
+    if mean < _MUCH * rest:
+        return ""
+    return (
+        f"{int(wild.sum())} of these rows are not believed; the mean error of the others is "
+        f"{1e3 * rest:.3g} mm"
+    )
+
+
+def _judged(result: CalibrationResult) -> Verdict:
     held = result.held_out
     if held is None or not len(held.rows):
         return _online(result)

@@ -38,6 +38,7 @@ def as_data(result: CalibrationResult) -> dict[str, Any]:
         "method": result.method,
         "status": _status(before, after),
         "advice": judged.advice,
+        "suspects": list(result.suspects),
         "judged_by": judged.by,
         "n_observations": len(result.before),
         "n_neurons": None if result.n_neurons is None else int(result.n_neurons[-1]),

@@ -47,6 +47,10 @@ def calibrate_described(
         )
     arm = None if setup.robot is None else load_arm(setup.robot, setup.tip, setup.eye)
     described = load_description(setup.file, arm, skip_bad=skip_bad)
+    for source in described.sources:
+        for line in source.report.lines() if source.report else ():
+            told = f"[dim]recording[/] {escape(source.file)}: {escape(line)}"
+            err().print(told, highlight=False, soft_wrap=True)
     check_wanted(wanted, described.measurements, described.sizes)
     with progress_bar("fitting, then judging", 1) as (progress, task):
         result = calibrate_setup(

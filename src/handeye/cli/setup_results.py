@@ -12,8 +12,7 @@ from handeye.calibration.results import ErrorSummary
 from handeye.calibration.setups.run import SetupResult
 from handeye.calibration.setups.words import SHOWN, advice, found_words
 from handeye.cli.console import out, table
-
-_WORST, _PARTS, _LISTED = 5, 8, 5
+from handeye.cli.found import WORST, between, print_open, print_parts, print_rejected, say
 
 
 def as_data(result: SetupResult, name: str) -> dict[str, Any]:
@@ -48,6 +47,12 @@ def as_data(result: SetupResult, name: str) -> dict[str, Any]:
             for channel, (before, after) in pairs.items()
         },
         "parameters": [asdict(parameter) for parameter in result.parameters],
+        "carried_by": dict(result.carried_by),
+        "recordings": {
+            source.file: source.report.as_data()
+            for source in result.described.sources
+            if source.report is not None
+        },
         "parts": [asdict(part) for part in result.parts],
         "undetermined": list(result.undetermined),
         "influence": [
@@ -73,20 +78,16 @@ def print_results(result: SetupResult, name: str, files: dict[str, Any]) -> None
     """Tables for a person, and where the files are."""
     console = out()
     _print_errors(result, name, console)
-    _say(console, "advice", [advice(held_out=result.held_out)])
+    say(console, "advice", [advice(held_out=result.held_out)])
     _print_found(result, console)
-    _print_parts(result, console)
-    _say(console, "open", result.undetermined[:_LISTED])
-    more = len(result.undetermined) - _LISTED
-    if more > 0:
-        _say(console, "", [f"and {more} more that the poses leave to ordinary tolerances"])
+    print_parts(console, "Which part of the arm was off, and by how much", result.parts)
+    print_open(console, result.undetermined)
     _print_worst(result, console)
-    if result.rejected:
-        _say(console, "rejected", [f"{len(result.rejected)} rows", *result.rejected[:_LISTED]])
+    print_rejected(console, result.rejected)
     heads = {"camera_info": "cameras", "hand_eye": "sensors"}
     for what, path in files.items():
         if path is not None:
-            _say(console, heads.get(what, what), [str(path)])
+            say(console, heads.get(what, what), [str(path)])
 
 
 def _print_errors(result: SetupResult, name: str, console: Console) -> None:
@@ -110,28 +111,15 @@ def _print_found(result: SetupResult, console: Console) -> None:
     for name, parameters in result.beside.items():
         for i, one in enumerate(parameters):
             last = i + 1 == len(parameters)
-            cells = ("" if i else name, *found_words(name, one))
+            cells = ("" if i else result.titled(name), *found_words(name, one))
             shown.add_row(*map(escape, cells), end_section=last)
     if result.beside:
         console.print(shown)
 
 
-def _print_parts(result: SetupResult, console: Console) -> None:
-    shown = table(
-        "Which part of the arm was off, and by how much",
-        "part", "its most changed number", "moves the hand [mm]", "known", left=2,
-    )  # fmt: skip
-    for part in result.parts[:_PARTS]:
-        number = f"{part.unknown} {part.change:+.3g} ± {part.std:.2g} {part.unit}".rstrip()
-        shown.add_row(part.part, number, f"{1e3 * part.moves:#.3g}", f"{part.known:.0%}")
-    console.print(shown)
-    if len(result.parts) > _PARTS:
-        _say(console, "", [f"and {len(result.parts) - _PARTS} more parts, which move it less"])
-
-
 def _print_worst(result: SetupResult, console: Console) -> None:
     shown = table("Rows to look at first", "file", "row", "", "error", "times the ordinary", "")
-    for channel, k in result.worst(_WORST):
+    for channel, k in result.worst(WORST):
         errors = result.errors[channel]
         unit, times = SHOWN[errors.unit]
         file, row = result.source(channel, k)
@@ -145,11 +133,8 @@ def _print_worst(result: SetupResult, console: Console) -> None:
 
 
 def _cells(median: float, s: ErrorSummary, scale: float) -> list[str]:
-    between = ""
-    if s.interval is not None:
-        between = " to ".join(f"{scale * end:#.3g}" for end in s.interval)
     middle, mean, p95, most = (f"{scale * v:#.3g}" for v in (median, s.mean, s.p95, s.max))
-    return [str(s.n), middle, mean, between, p95, most]
+    return [str(s.n), middle, mean, between(s, scale), p95, most]
 
 
 def _first(result: SetupResult, unit: str) -> str | None:
@@ -163,8 +148,3 @@ def _degrees(summary: ErrorSummary) -> dict[str, Any]:
     turned = {k: v if k == "n" else float(np.degrees(v)) for k, v in values.items()}
     ends = None if interval is None else [float(np.degrees(end)) for end in interval]
     return {**turned, "interval": ends}
-
-
-def _say(console: Console, head: str, lines: list[str] | tuple[str, ...]) -> None:
-    for i, line in enumerate(lines):
-        console.print(f"{'' if i else head:<10}{escape(line)}", highlight=False, soft_wrap=True)

@@ -1,7 +1,7 @@
 """`handeye suggest`: which poses to add."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 import typer
@@ -19,10 +19,18 @@ from handeye.cli.bags import read_any
 from handeye.cli.console import check_places, err, out, progress_bar, table, write_json
 from handeye.cli.robot import ROBOT_HELP, load_robot
 from handeye.errors import InvalidInput
-from handeye.io.bags import BagOptions
+from handeye.io.bags import BagOptions, is_bag
 from handeye.io.targets import write_commands
 
 _MODEL = ".safetensors"
+
+
+class _Named(NamedTuple):
+    """The robot of a log, by names."""
+
+    robot: str | None = None
+    tip: str | None = None
+    eye: str | None = None
 
 
 def suggest(
@@ -38,6 +46,13 @@ def suggest(
     ] = None,
     tip: Annotated[
         str | None, typer.Option(help="Link of the URDF that carries the marker.")
+    ] = None,
+    eye: Annotated[
+        str | None,
+        typer.Option(
+            help="Link of the URDF that carries the sensor, if the robot itself carries it.",
+            show_default=False,
+        ),
     ] = None,
     n: Annotated[int, typer.Option("-n", min=1, help="How many poses.")] = 5,
     wider: Annotated[
@@ -87,7 +102,7 @@ def suggest(
     in the way is not known here.
     """
     check_places(None, json_file, None if target_file is None else str(target_file))
-    calibrator, names = _calibrator(source, robot, tip, skip_bad=skip_bad)
+    calibrator, names = _calibrator(source, _Named(robot, tip, eye), skip_bad=skip_bad)
     if not isinstance(calibrator, Combined):
         raise InvalidInput(
             f"{source}: a {type(calibrator).__name__} does not know how certain it is, so it "
@@ -119,19 +134,22 @@ def _view(
     return View(**asked)
 
 
-def _calibrator(
-    source: Path, robot: str | None, tip: str | None, *, skip_bad: bool
-) -> tuple[Any, tuple[str, ...]]:
+def _calibrator(source: Path, named: _Named, *, skip_bad: bool) -> tuple[Any, tuple[str, ...]]:
     if source.suffix == _MODEL:
+        if named != _Named():
+            raise InvalidInput(f"{source} knows its robot: leave out --robot, --tip and --eye")
         calibrator: Any = load_model(source).calibrator
         model = calibrator.model
         arm = model.arm if isinstance(model, PlacedArm) else model.nominal.arm
         return calibrator, arm.joint_names
-    if robot is None:
+    if named.robot is None:
         raise InvalidInput(f"{source}: a log needs --robot; a model ends in {_MODEL}")
-    nominal = load_robot(robot, tip)
+    # As `handeye calibrate` does: of a table the joints tell which part of the robot is meant.
+    table = None if is_bag(source) else read_any(source, BagOptions(), skip_bad=skip_bad)
+    joints = None if table is None or table.log.kind == "stereo" else table.log.joint_names
+    nominal = load_robot(named.robot, named.tip, named.eye, joints=joints)
     arm = arm_of(nominal)
-    reading = read_any(source, BagOptions(), arm=arm, skip_bad=skip_bad)
+    reading = table or read_any(source, BagOptions(), arm=arm, skip_bad=skip_bad)
     checked = check_log(arm, reading.log, skip_bad=skip_bad)
     with progress_bar("learning from the log", len(checked.log)) as (progress, task):
         done = calibrate_log(

@@ -7,7 +7,12 @@ import numpy as np
 from handeye.calibration.results import CalibrationResult, ErrorSummary
 from handeye.calibration.verdict import Verdict, verdict
 from handeye.reports.calibration_expected import expected_section
-from handeye.reports.calibration_parts import open_section, parts_section, rows_section
+from handeye.reports.calibration_parts import (
+    contributions_table,
+    open_section,
+    parts_section,
+    rows_section,
+)
 from handeye.reports.figures import (
     error_distribution,
     error_in_space,
@@ -47,7 +52,7 @@ def calibration_page(result: CalibrationResult, *, date: str = "") -> Page:
         subtitle=f"{result.robot}, from {Path(result.log).name}. Method: {result.method}.",
         sections=[
             Section("", [_tiles(result, judged.where, before, after), Prose(_advice(judged))]),
-            Section("In numbers", [_table(result)]),
+            Section("In numbers", [_table(result), *contributions_table(result)]),
             *parts_section(result),
             *_findings(result),
             *open_section(result),
@@ -188,10 +193,10 @@ def _places(result: CalibrationResult, judged: Verdict) -> list[FigureBlock]:
         ),
         *([] if flat else [in_space]),
         FigureBlock(
-            residuals_by_joint(names, joints, judged.before, judged.after),
+            residuals_by_joint(names, joints, judged.before, judged.after, sliding=result.sliding),
             "A slope or a wave along one joint says that this joint is part of the error. Lines "
             "are medians; after learning they should lie low and flat.",
-            f"Position error over the angle of each joint ({', '.join(names)}).",
+            f"Position error over the reading of each joint ({', '.join(names)}).",
         ),
         FigureBlock(
             error_distribution(judged.before, judged.after),

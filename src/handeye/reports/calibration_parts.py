@@ -1,11 +1,49 @@
 """Parts of the calibration page that name things: parts of the robot, rows, open directions."""
 
 from handeye.arrays import Array
+from handeye.calibration.contributions import Contribution, contributions
 from handeye.calibration.results import CalibrationResult, Influence, PartChange
 from handeye.reports.page import Badge, Notes, Section, Table
 from handeye.reports.style import significant
 
 _PARTS, _ROWS = 12, 8
+
+
+def contributions_table(result: CalibrationResult) -> list[Table]:
+    """What each part of the model takes away of the errors, in mm and degrees."""
+    parts = contributions(result)
+    if len(parts) < 2:
+        return []
+    turned = all(part.orientation is not None for part in parts)
+    rows = [
+        [
+            f"{part.part[0].upper()}{part.part[1:]}",
+            *_with_gain(1e3 * part.error.mean, 1e3 * before.error.mean if before else None),
+            *(_turns(part, before) if turned else []),
+        ]
+        for before, part in zip([None, *parts], parts, strict=False)
+    ]
+    heads = ["Mean error with it [mm]", "It takes away [mm]"]
+    heads += ["Mean turn with it [°]", "It takes away [°]"] if turned else []
+    return [
+        Table(
+            ("Part of the model", *heads),
+            rows,
+            caption="On held-out rows, each part with those before it. Placement is where sensor "
+            "and marker are, geometry the lengths, directions, zeros and scales of the joints.",
+        )
+    ]
+
+
+def _turns(part: Contribution, before: Contribution | None) -> list[str]:
+    assert part.orientation is not None
+    was = before.orientation.mean if before and before.orientation else None
+    return _with_gain(part.orientation.mean, was)
+
+
+def _with_gain(now: float, was: float | None) -> list[str]:
+    gain = "" if was is None else significant(was - now, 2)
+    return [significant(now, 3), gain.replace("-", "\N{MINUS SIGN}")]
 
 
 def parts_section(result: CalibrationResult) -> list[Section]:

@@ -98,21 +98,11 @@ def _pictures(channel: Channel, result: SetupResult) -> Section:
         channel = channel._replace(errors=channel.errors.only(~doubted))
     errors, unit = channel.errors, channel.unit
     what = f"Error of {channel.name}"
-    joints = np.concatenate([one.joints for one in result.fit.given])
-    starts = np.cumsum([0, *(len(one.joints) for one in result.fit.given)])
-    own = joints[starts[errors.measurement] + errors.row]
     return Section(
         channel.name[0].upper() + channel.name[1:],
         [
             *_where(channel, result),
-            FigureBlock(
-                residuals_by_joint(
-                    result.described.arm.joint_names, own, errors.before, errors.after,
-                    unit=unit, what=what,
-                ),
-                "A slope or a wave along one joint says that this joint is part of the error.",
-                f"{what} over the reading of each joint, before and after.",
-            ),
+            *_by_joint(channel, result),
             FigureBlock(
                 error_distribution(errors.before, errors.after, unit=unit, what=what),
                 "Further left is better. Dots mark the median and what 95 % stay below. Rows that "
@@ -120,7 +110,38 @@ def _pictures(channel: Channel, result: SetupResult) -> Section:
                 f"Cumulative distribution of the error of {channel.name} in {unit.name}.",
             ),
         ],
-    )  # fmt: skip
+    )
+
+
+def _by_joint(channel: Channel, result: SetupResult) -> list[FigureBlock]:
+    """Errors over the joints of each chain of links that the channel has rows of."""
+    out: list[FigureBlock] = []
+    what, joints = f"Error of {channel.name}", result.joints_of(channel.errors)
+    for names, rows in joints.items():
+        errors = channel.errors.only(np.isin(channel.errors.measurement, rows))
+        own: Array = np.empty((len(errors.row), len(names)))
+        for one in rows:
+            at = errors.measurement == one
+            own[at] = result.fit.given[one].joints[errors.row[at]]
+        ends = " and ".join(dict.fromkeys(result.ends[one] for one in rows))
+        told = f"Of {ends}: a" if len(joints) > 1 else "A"
+        out.append(
+            FigureBlock(
+                residuals_by_joint(
+                    names,
+                    own,
+                    errors.before,
+                    errors.after,
+                    unit=channel.unit,
+                    what=what,
+                    sliding=result.sliding,
+                ),
+                f"{told} slope or a wave along one joint says that this joint is part of the "
+                "error.",
+                f"{what} over the reading of each joint, {ends}, before and after.",
+            )
+        )
+    return out
 
 
 def _where(channel: Channel, result: SetupResult) -> list[FigureBlock]:
@@ -137,8 +158,9 @@ def _where(channel: Channel, result: SetupResult) -> list[FigureBlock]:
                     errors_in_picture(
                         one.measured[errors.row], errors.before, errors.after, size=size
                     ),
-                    f"Errors over the picture of {one.camera.name}. Order among the arrows is what "
-                    "lens, camera or arm still do wrong; what is left should point every way.",
+                    f"Errors over the picture of {one.camera.name}, which shows {_target(one)}. "
+                    "Order among the arrows is what lens, camera or arm still do wrong; what is "
+                    "left should point every way.",
                     "Maps of the error over the picture before and after.",
                 )
             )
@@ -146,12 +168,18 @@ def _where(channel: Channel, result: SetupResult) -> list[FigureBlock]:
             out.append(
                 FigureBlock(
                     error_in_space(places[errors.row], errors.before, errors.after),
-                    f"Each line begins where {one.sight.sensor.name} saw its target, in the "
+                    f"Each line begins where {one.sight.sensor.name} saw {_target(one)}, in the "
                     "sensor's frame, and points along the error.",
                     "Error lines in space before and after.",
                 )
             )
     return out
+
+
+def _target(one: Instrument) -> str:
+    """What is seen, by its name."""
+    seen = one.sight.target
+    return seen.name if seen.free.any() else one.sight.points.name
 
 
 def _places(one: Instrument) -> Array | None:

@@ -80,14 +80,15 @@ def numbers(channels: list[Channel], result: SetupResult) -> Table:
 def found(result: SetupResult) -> Table:
     """Frames, points and cameras, with standard deviations."""
     rows = [
-        ["" if i else name, *found_words(name, one)]
+        ["" if i else result.titled(name), *found_words(name, one)]
         for name, parameters in result.beside.items()
         for i, one in enumerate(parameters)
     ]
     return Table(
         ("", "", "Found", "±", "Stated"),
         rows,
-        caption="Positions are in the frame of the base, or of the flange for what it carries; "
+        caption="Positions are in the frame of the link that carries it: of the base, or of the "
+        "flange; "
         "turns are from where a frame was stated or placed at first. ±: standard deviation.",
         words=frozenset({0, 1}),
     )

@@ -1,6 +1,5 @@
 """Arms described by URDF files, through pinocchio."""
 
-from collections.abc import Sequence
 from difflib import get_close_matches
 from functools import cache
 from importlib import import_module
@@ -12,10 +11,10 @@ from numpy.typing import ArrayLike
 
 from handeye.arrays import Array, Booleans
 from handeye.errors import FileFormatError, InvalidInput, MissingExtra
+from handeye.robots.moving import ends_in, limits, links_in, refuse_unless_single, unusable
 from handeye.robots.readings import Readings, followers
 from handeye.robots.shipped import shipped_robots
 from handeye.robots.stages import Stages
-from handeye.robots.tips import chosen_links
 from handeye.robots.ways import Way
 
 FREE_TRAVEL = 1.0
@@ -46,6 +45,7 @@ class UrdfArm:
         self._data: Any = model.createData()
         # A joint may have the same name.
         body = _pinocchio().FrameType.BODY
+        self.base = eye or next(iter(links_in(model)))
         self._tip = int(model.getFrameId(tip, body))
         self._eye = None if eye is None else int(model.getFrameId(eye, body))
         ends = (0 if i is None else model.frames[i].parentJoint for i in (self._eye, self._tip))
@@ -54,17 +54,19 @@ class UrdfArm:
         self.stage_names = tuple(str(model.names[i]) for i in chain)
         self.readings = Readings.of_chain(self.stage_names, followers(urdf))
         for joint in dict.fromkeys((*self.stage_names, *self.readings.names)):
-            _refuse_unless_single(model, joint, name, tip)
+            refuse_unless_single(model, joint, name, tip)
         joints = [model.joints[i] for i in chain]
         self._turns_freely = np.array([joint.nq == 2 for joint in joints], dtype=bool)
         self._at = np.array([joint.idx_q for joint in joints], dtype=np.int64)
         self._speed_at = np.array([joint.idx_v for joint in joints], dtype=np.int64)
-        self.lower, self.upper = _limits(model, self.readings.names)
+        self.lower, self.upper = limits(model, self.readings.names)
         ends = self.readings.ends(self.lower, self.upper)
         unlimited = ~np.isfinite(ends).all(axis=0)
         self.travel: Array = np.where(unlimited, FREE_TRAVEL, np.abs(ends[1] - ends[0]))
         # All links stretched in one line, sliding joints far out: nothing is farther away.
         stages = self.stages()
+        self.sliding: Booleans = np.zeros(len(self.readings.names), np.bool_)
+        self.sliding[self.readings.of] = stages.slides
         far = np.where(unlimited, FREE_TRAVEL, np.max(np.abs(ends), axis=0))[stages.slides]
         lengths = np.linalg.norm(stages.placements[:, :3, 3], axis=1)
         self.reach = float(lengths.sum() + far.sum())
@@ -114,13 +116,23 @@ class UrdfArm:
         try:
             model = _pinocchio().buildModelFromXML(urdf)
         except (ValueError, RuntimeError) as error:
-            raise FileFormatError(
-                f"is not a usable URDF file ({error}); expand a xacro file with `xacro` first"
-            ) from error
-        bodies = [frame for frame in model.frames if frame.type == _pinocchio().FrameType.BODY]
-        links = {str(body.name): int(body.parentJoint) for body in bodies}
-        ends = chosen_links(links, [list(way) for way in model.supports], name, tip, eye)
+            raise FileFormatError(unusable(urdf, error)) from error
+        ends = ends_in(model, name, tip, eye)
         return cls(model, ends.tip, name, urdf, ends.eye)
+
+    def between(self, tip: str | None = None, eye: str | None = None) -> Self:
+        """Another chain through the same robot, from the link `eye` to the link `tip`.
+
+        By default from where this one begins, and to where it ends.
+
+        Raises:
+            InvalidInput: no such link, or links that no joint moves against each other.
+        """
+        wanted = tip or self.tip, eye or self.base
+        if wanted == (self.tip, self.base):
+            return self
+        ends = ends_in(self._model, self.name, *wanted)
+        return type(self)(self._model, ends.tip, self.name, self.urdf, ends.eye)
 
     @property
     def held(self) -> Booleans:
@@ -172,8 +184,19 @@ class UrdfArm:
 
     def stages(self) -> Stages:
         """The constants of the chain from base to tip."""
-        eye = np.eye(4) if self._eye is None else self._place(self._eye)
-        return Stages.of(self._model, self._way, eye, self._place(self._tip))
+        return Stages.of(self._model, self._way, self._place(self._eye), self._place(self._tip))
+
+    def branches(self) -> tuple[Stages, Stages]:
+        """From where both ends part in the tree, the constants of the way to base, and to tip.
+
+        T_base_tip = T_base^-1 T_tip. Both lead away from the root; the first has the joints that
+        move the base, in the opposite order, and the second the others.
+        """
+        ends = (self._way.up[::-1], self._eye), (self._way.down, self._tip)
+        base, tip = (
+            Stages.of(self._model, Way((), way), np.eye(4), self._place(end)) for way, end in ends
+        )
+        return base, tip
 
     def loads(self, joints: ArrayLike) -> Array:
         """Torque of gravity about (force along) each stage's axis, (N, n) [Nm] or [N].
@@ -188,8 +211,10 @@ class UrdfArm:
             load[:] = -pin.computeGeneralizedGravity(model, data, configuration)[self._speed_at]
         return out
 
-    def _place(self, frame: int) -> Array:
-        """Of a link (4, 4), in the frame of the joint that carries it."""
+    def _place(self, frame: int | None) -> Array:
+        """Of a link (4, 4), by default the root, in the frame of the joint that carries it."""
+        if frame is None:
+            return np.eye(4)
         return np.asarray(self._model.frames[frame].placement.homogeneous)
 
     def _configurations(self, joints: ArrayLike) -> Array:
@@ -211,30 +236,6 @@ def load_arm(spec: str, tip: str | None = None, eye: str | None = None) -> UrdfA
     if Path(spec).suffix == ".urdf" or Path(spec).is_file():
         return UrdfArm.from_file(spec, tip, eye)
     return UrdfArm.shipped(spec, tip, eye)
-
-
-def _refuse_unless_single(model: Any, joint: str, name: str, tip: str) -> None:
-    if not model.existJointName(joint):
-        raise InvalidInput(
-            f"{name}: a mimic joint on the way to {tip} follows {joint!r}, which is no moving joint"
-        )
-    if model.joints[model.getJointId(joint)].nv != 1:
-        raise InvalidInput(
-            f"{name}: joint {joint} on the way to {tip} is no revolute, continuous or prismatic "
-            "joint: choose a link before it with --tip (in Python: tip=), or begin beyond it with "
-            "--eye (eye=)"
-        )
-
-
-def _limits(model: Any, joints: Sequence[str]) -> tuple[Array, Array]:
-    """Lower and upper ones (m,) of joints [rad] or [m], infinite where there are none."""
-    numbers = [model.getJointId(joint) for joint in joints]
-    at = np.array([model.joints[i].idx_q for i in numbers], dtype=np.int64)
-    freely = np.array([model.joints[i].nq == 2 for i in numbers], dtype=bool)
-    low, high = model.lowerPositionLimit[at], model.upperPositionLimit[at]
-    # A limit that the file leaves out reads as 0 <= q <= 0.
-    unlimited = freely | (low >= high)
-    return np.where(unlimited, -np.inf, low), np.where(unlimited, np.inf, high)
 
 
 @cache

@@ -6,7 +6,10 @@ from tests.calibration.hand_eye.arms import Wrist
 from tests.calibration.hand_eye.scenes import SETUPS, apart, noisy, random_poses, scene, seen
 
 from handeye.calibration.hand_eye import Tolerances, solve, solve_arm
-from handeye.calibration.hand_eye.samples import Setup
+from handeye.calibration.hand_eye.links import Links
+from handeye.calibration.hand_eye.model import Guess, Model
+from handeye.calibration.hand_eye.refinement import Refinement
+from handeye.calibration.hand_eye.samples import Samples, Setup
 from handeye.calibration.hand_eye.turns import turned_by
 from handeye.errors import InvalidInput
 from handeye.geometry import make_pose
@@ -131,3 +134,19 @@ def test_millimetres_or_metres_give_the_same():
     other = solve(there.flanges, in_millimetres, free_scale=True)
     assert other.scale == pytest.approx(1e3 * one.scale, rel=1e-4)
     np.testing.assert_allclose(other.X, one.X, atol=1e-4)
+
+
+@pytest.mark.parametrize(("times", "least", "most"), [(0.0, 0.49, 0.9), (6.0, 2.0, 8.0)])
+def test_tolerances_follow_the_arm(times: float, least: float, most: float):
+    rng = np.random.default_rng(10)
+    stated = Tolerances(1e-3, 5e-4)
+    errors = times * rng.normal(size=(4, 6)) * np.repeat([stated.angle, stated.length], 3)
+    q = rng.uniform(-1.5, 1.5, (60, 4))
+    X, Z = random_poses(rng, 2, 0.1)
+    sensed = noisy(rng, seen(Wrist(errors).poses(q), X, Z, "eye_in_hand"), 2e-4, 1e-4)
+    samples = Samples.of(Wrist().poses(q), sensed, "eye_in_hand", in_order=True)
+    refinement = Refinement(Model(samples, links=Links.of(Wrist(), q)), stated)
+    found = refinement.fit(Guess(X, Z, 1.0, np.tile(np.eye(4), (3, 1, 1)))).tolerances
+    # The stated ones count as one link beside the three that were seen.
+    for name in ("angle", "length"):
+        assert least < getattr(found, name) / getattr(stated, name) < most

@@ -133,6 +133,16 @@ def test_closed_forms_are_exact_without_errors(setup: Setup, free_scale: bool):
     assert first.scale == pytest.approx(1.7 if free_scale else 1.0)
 
 
+def test_three_right_samples_are_found_among_wrong_ones():
+    rng = np.random.default_rng(11)
+    there = scene(rng, "eye_in_hand", 20)
+    sensed = there.sensed.copy()
+    sensed[:8] = random_poses(rng, 8)
+    samples = Samples.of(there.flanges, sensed, "eye_in_hand", in_order=False)
+    first = starts(samples, free_scale=False, tied=False)[0]
+    assert max(apart(first.camera, there.X)) < 1e-6
+
+
 def test_closed_form_of_steps_is_exact():
     rng = np.random.default_rng(9)
     there = scene(rng, "eye_in_hand", 8)

@@ -174,7 +174,7 @@ def test_heavy_tails_are_weighed_rather_than_cut():
         (lambda A, S: (A * np.nan, S), "flanges must be finite"),
         (lambda A, S: (A, 2.0 * S), r"sensed\[0\] is no pose"),
         (lambda A, S: (A, S * np.array([1.0, 1.0, -1.0, 1.0])), r"sensed\[0\] is no pose"),
-        (lambda A, S: (A, S.swapaxes(1, 2)), r"sensed\[0\] is no pose"),
+        (lambda A, S: (A, S.swapaxes(1, 2)), r"sensed\[0\] is no pose: it is transposed"),
     ],
     ids=["few", "unpaired", "shape", "nan", "scaled", "mirrored", "transposed"],
 )

@@ -1,5 +1,6 @@
 """A fitted set-up in files: as it was, and as other programs want it."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from tests.calibration.setups.setups import described
 
 from handeye.arrays import Array
 from handeye.calibration.arm.measurements.storage import from_arrays, to_arrays
+from handeye.calibration.arm.robot import SETTINGS
 from handeye.calibration.exporting import (
     calibrated_joints_yaml,
     calibrated_urdf,
@@ -156,6 +158,20 @@ def test_commands_bring_the_marker_where_a_camera_wants_it(cameras: Fitted):
         SetupCommands(fit, "eye")
     with pytest.raises(InvalidInput, match="no marker is called spot: choose from dot"):
         SetupCommands(fit, marker="spot")
+
+
+def test_no_correction_brings_the_marker_farther_than_the_envelope(
+    cameras: Fitted, monkeypatch: pytest.MonkeyPatch
+):
+    _, fit = cameras
+    near = replace(SETTINGS, envelope=1e-4)
+    monkeypatch.setattr("handeye.calibration.setups.commands.SETTINGS", near)
+    wanted = np.random.default_rng(2).uniform(-1.2, 1.2, (5, 6))
+    c = fit.measurements[0].sight.points.reference[0]
+    goals = transform(fit.flanges(wanted), c)
+    joints = SetupCommands(fit, "base", "dot").command(PointTarget(goals, wanted))
+    off = np.linalg.norm(transform(arm().poses(joints), c) - goals, axis=1)
+    np.testing.assert_allclose(off, 1e-4, rtol=1e-2)
 
 
 def test_a_set_up_that_only_carries_sensors_has_nothing_to_bring(tmp_path: Path):

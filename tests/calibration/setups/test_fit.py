@@ -195,6 +195,20 @@ def test_what_has_one_name_has_one_place():
         np.testing.assert_array_equal(point.tolerance, same.tolerance)
 
 
+def test_what_is_shared_is_placed_by_all_rows():
+    """And not by the first table, of an arm with errors that are larger than any noise."""
+    q = np.random.default_rng(3).uniform(-2.0, 2.0, (100, 6))
+    A, s = arm().poses(q), transform(invert(TRACKER), marker(q))
+    parts = [slice(0, 15), slice(15, 100)]
+    each = [PointSightings.start(q[some], A[some], s[some]) for some in parts]
+    first, second = agreeing(each, [A[some] for some in parts])
+    whole = PointSightings.start(q, A, s)
+    sensor, alone, all_rows = (one.sight.sensor.reference for one in (second, each[0], whole))
+    np.testing.assert_array_equal(sensor, first.sight.sensor.reference)
+    apart = np.linalg.norm(sensor[:3, 3] - all_rows[:3, 3])
+    assert apart < 0.3 * np.linalg.norm(alone[:3, 3] - all_rows[:3, 3])
+
+
 def test_two_things_of_one_name_are_refused():
     tracker, wire, *_ = measured()
     assert isinstance(wire, Distances)

@@ -1,12 +1,14 @@
 """An arm as learned, but for its curves: constants that a URDF file can state."""
 
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from handeye.arrays import Array
-from handeye.calibration.arm.kernels import TWIST, SerialArm, joint_at
+from handeye.calibration.arm.kernels import TWIST, SerialArm, joint_at, joint_width
+from handeye.calibration.arm.tree import JointTree
 from handeye.calibration.placement import Placement
 from handeye.geometry import invert, make_pose
 from handeye.robots.stages import Stages
@@ -26,6 +28,41 @@ class CorrectedArm:
     placement: Placement
     scales: Array
     compliances: Array
+
+
+@dataclass(frozen=True, eq=False)
+class CorrectedJoints:
+    """Constants of joints that were calibrated, wherever in the robot's tree they are.
+
+    names        of the n joints
+    departures   D (n, 4, 4): how far each stands from where it was, in its own frame,
+                 T_parent_joint (found) = T_parent_joint (nominal) D
+    scales       (n,) what each reading is multiplied by
+    compliances  (n,) what each joint gives way under a load [rad/Nm] or [m/N]
+    """
+
+    names: tuple[str, ...]
+    departures: Array
+    scales: Array
+    compliances: Array
+
+    @classmethod
+    def of_arm(cls, names: tuple[str, ...], nominal: Stages, found: CorrectedArm) -> Self:
+        """Of a chain of joints."""
+        departures = nominal.departures(found.stages)
+        return cls(names, departures, found.scales, found.compliances)
+
+    @classmethod
+    def of_tree(cls, tree: JointTree, x: Array) -> Self:
+        """Of the joints of a tree with unknowns x (n_x,); D = A E(xi) A^T as in `corrected`."""
+        kernel = tree.kernel
+        every = x[: len(kernel.slides) * joint_width(kernel)].reshape(len(kernel.slides), -1)
+        D = np.array([
+            _shifted(turn @ own[:3], turn @ own[3:TWIST])
+            for turn, own in zip(tree.turns, every, strict=True)
+        ])  # fmt: skip
+        give = every[:, TWIST + 1] if kernel.compliant else np.zeros(len(every))
+        return cls(tree.names, D, 1.0 + every[:, TWIST], give)
 
 
 def corrected(kernel: SerialArm, stages: Stages, x: Array) -> CorrectedArm:

@@ -13,18 +13,17 @@ off, and a joint that is worse than its data sheet says is allowed to be.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import cho_solve, cholesky, solve_triangular
-from scipy.linalg.blas import dsyrk
+from scipy.linalg import cho_solve
 from scipy.linalg.lapack import dlauum, dtrtri
 
-from handeye.arrays import Array, Booleans, Integers
-from handeye.calibration.arm.student import Noise, first_noise, noise_at
-from handeye.calibration.arm.system import Rows, System
+from handeye.arrays import Array, Integers
+from handeye.calibration.arm.lines import Lines, lines_at, root_of
+from handeye.calibration.arm.posterior import Posterior
+from handeye.calibration.arm.student import first_noise, least_noise, noise_at
+from handeye.calibration.arm.system import System
 
 # Widths of priors, over the stated ones; what has become this narrow is left out for good.
 _LEAST, _MOST, _OFF = 1e-4, 10.0, 1e-3
@@ -36,68 +35,6 @@ _STATED, _UNDECIDED = 1, 3
 # Done when predictions move by less than this part of their standard deviation, and the noise.
 _SETTLED, _SAME_NOISE = 0.1, 0.02
 _SMALLEST = 1e-9
-
-
-@dataclass(frozen=True, eq=False)
-class Posterior:
-    """What is known of n unknowns after N rows in C channels.
-
-    x          (n,) the estimate
-    widths     (n,) standard deviations of the priors, as found
-    used       (n,) those that were not switched off; the others are 0
-    noise      (C,) standard deviation of each channel beyond what was stated
-    squares    (N, C) squared residuals over their variance; nan where a row has no such channel
-
-    `_told` (m, m) is the information of the rows on the used unknowns, by the latest tangents.
-    """
-
-    x: Array
-    widths: Array
-    used: Booleans
-    squares: Array
-    _system: System
-    _noise: Noise
-    _told: Array
-
-    @property
-    def noise(self) -> Array:
-        """(C,) standard deviation of each channel beyond what was stated."""
-        return self._noise.noise
-
-    def rows_say(self, which: Booleans) -> Array:
-        """Information (m, m) of the rows on the unknowns of `which` (n,), in stated tolerances."""
-        if not np.any(which & ~self.used):
-            inside = which[self.used]
-            return self._told[np.ix_(inside, inside)]
-        return _lines(self._system, self.x, self._noise, which).information.sum(axis=0)
-
-    @cached_property
-    def root(self) -> Array:
-        """(n, n) lower triangular; root root^T is the information in units of stated tolerances.
-
-        With priors as wide as found or as stated, whichever is wider: that nothing was seen of an
-        unknown does not make it small.
-        """
-        width = np.maximum(self.widths / self._system.tolerance, 1.0)
-        inside = self.rows_say(np.ones_like(self.used)) + np.diag(width**-2.0)
-        return cholesky(inside, lower=True)
-
-    @cached_property
-    def leverage(self) -> Array:
-        """(N, C) how far a row determines what is predicted for it, 0 to the channel's values."""
-        system, used = self._system, self.used
-        width = (self.widths / system.tolerance)[used]
-        inside = self.rows_say(used) + np.diag(width**-2.0)
-        root = cholesky(inside, lower=True)
-        out = np.zeros(self.squares.shape)
-        for rows in system.rows(self.x):
-            _, J = _whitened(rows, system.tolerance, self._noise, used)
-            half = solve_triangular(root, J.reshape(-1, J.shape[-1]).T, lower=True)
-            lever = np.sum(half**2, axis=0).reshape(J.shape[:2])
-            for c in np.unique(rows.channels):
-                some = slice(rows.first, rows.first + len(lever))
-                out[some, c] = np.sum(lever[:, rows.channels == c], axis=1)
-        return out
 
 
 def solve(
@@ -112,39 +49,25 @@ def solve(
     z = np.zeros(len(tau)) if start is None else start / tau
     width, used = np.ones(len(tau)), system.shown.copy()
     z[~used] = 0.0
-    noise, told = first_noise(system, tau * z), np.empty((0, 0))
+    least = least_noise(system, tau * z)
+    noise, told = first_noise(system, tau * z, least), np.empty((0, 0))
     for number in range(_ROUNDS):
         if number > _UNDECIDED:
             used = used & (width >= _OFF)
             z[~used] = 0.0
-        lines = _lines(system, tau * z, noise, used)
+        lines = lines_at(system, tau * z, noise, used)
         groups = system.groups[used] if number >= _STATED else np.full(int(used.sum()), -1)
         step = _step(lines, z[used], width[used], groups)
         z[used], width[used] = step.z, step.width
         before = noise.noise
-        noise = noise_at(system, tau * z, step.known, noise)
+        noise = noise_at(system, tau * z, step.known, noise, least)
         if after_each is not None:
             after_each(number + 1, _ROUNDS)
         same = np.all(np.abs(np.log(noise.noise / before)) < _SAME_NOISE)
         told = np.tensordot(step.scale, lines.information, 1)
         if number + 1 >= _FEWEST and same and step.moved < _SETTLED:
             break
-    return Posterior(tau * z, tau * width, used, noise.squares, system, noise, told)
-
-
-class _Lines(NamedTuple):
-    """Weighted equations of each channel about a point: S (C, n, n), J^T r (C, n), r^2 (C,).
-
-    values (C,): how many there are; stated (C,): share of their variance that was stated; tails
-    (C,) what tails leave of information.
-    """
-
-    information: Array
-    gradient: Array
-    squares: Array
-    values: Array
-    stated: Array
-    tails: Array
+    return Posterior(tau * z, tau * width, used, system, noise, told)
 
 
 class _Step(NamedTuple):
@@ -161,7 +84,7 @@ class _Step(NamedTuple):
     moved: float
 
 
-def _step(lines: _Lines, old: Array, width: Array, groups: Integers) -> _Step:
+def _step(lines: Lines, old: Array, width: Array, groups: Integers) -> _Step:
     """Unknowns, widths and noise for which the evidence of straight lines is greatest."""
     S, g = lines.information, lines.gradient
     # How much smaller the variance of each channel is than it was when the lines were weighted.
@@ -170,7 +93,7 @@ def _step(lines: _Lines, old: Array, width: Array, groups: Integers) -> _Step:
     z, known, moved = old, np.zeros(len(S)), 0.0
     for number in range(_WIDTHS):
         total = np.tensordot(scale, S, 1)
-        root = cholesky(total + np.diag(width**-2.0), lower=True)
+        root = root_of(total, width)
         z = cho_solve((root, True), total @ old - scale @ g)
         half = _inverse(root)
         off = z - old
@@ -179,39 +102,10 @@ def _step(lines: _Lines, old: Array, width: Array, groups: Integers) -> _Step:
         left = np.array([lines.squares[c] + (2.0 * g[c] + S[c] @ off) @ off for c in range(len(S))])
         free = np.maximum(lines.values - known, 1.0)
         scale = np.minimum(free / np.maximum(left / lines.tails, _SMALLEST * free), most)
-        moved = float(np.sqrt(off @ total @ off / max(gamma.sum(), 1.0)))
+        # Where nothing moves rounding may make it negative.
+        moved = float(np.sqrt(max(off @ total @ off, 0.0) / max(gamma.sum(), 1.0)))
         width = _widths(groups, z, gamma, width)
     return _Step(z, width, known, scale, moved)
-
-
-def _whitened(rows: Rows, tau: Array, noise: Noise, used: Booleans) -> tuple[Array, Array]:
-    """Residuals (M, k) and slopes (M, k, n) of used unknowns in tolerances, weighted."""
-    inside = slice(rows.first, rows.first + len(rows.residuals))
-    weights = noise.weights()[inside][:, rows.channels]
-    scale = np.sqrt(weights / (rows.std**2 + noise.noise[rows.channels] ** 2))
-    slopes = rows.slopes if used.all() else rows.slopes[:, :, used]
-    return rows.residuals * scale, slopes * (scale[..., np.newaxis] * tau[used])
-
-
-def _lines(system: System, x: Array, noise: Noise, used: Booleans) -> _Lines:
-    """All equations, linearised at x (n,), by channel."""
-    n, C = int(used.sum()), system.n_channels
-    sums, g = [np.zeros((n, n), order="F") for _ in range(C)], np.zeros((C, n))
-    squares, values, stated = np.zeros(C), np.zeros(C), np.zeros(C)
-    for rows in system.rows(x):
-        r, J = _whitened(rows, system.tolerance, noise, used)
-        for c in np.unique(rows.channels):
-            own = rows.channels == c
-            flat = np.ascontiguousarray(J[:, own]).reshape(-1, n)
-            wanted = r[:, own].reshape(-1)
-            sums[c] = dsyrk(1.0, flat.T, beta=1.0, c=sums[c], overwrite_c=1, lower=True)
-            g[c] += flat.T @ wanted
-            squares[c] += wanted @ wanted
-            values[c] += len(wanted)
-            variance = rows.std[:, own] ** 2
-            stated[c] += np.sum(variance / (variance + noise.noise[c] ** 2))
-    S = np.array([part + np.tril(part, -1).T for part in sums])
-    return _Lines(S, g, squares, values, stated / np.maximum(values, 1.0), noise.tails)
 
 
 def _inverse(root: Array) -> Array:

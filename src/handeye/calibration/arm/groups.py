@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from handeye.arrays import Booleans, Integers
+from handeye.arrays import Array, Booleans, Integers
 from handeye.calibration.arm.kernels import SerialArm, joint_width
 
 # Harmonics up to each of these share it.
@@ -36,16 +36,25 @@ def prior_groups(kernel: SerialArm) -> Integers:
 def shown_by(kernel: SerialArm, numbers: int) -> Booleans:
     """Unknowns of an arm, base and marker left out, that so many measured numbers can show.
 
+    As `shown_of`, where every number depends on every joint.
+    """
+    n = len(kernel.slides)
+    return shown_of(kernel, np.full(n, numbers / max(n, 1)))
+
+
+def shown_of(kernel: SerialArm, numbers: Array) -> Booleans:
+    """The same with each joint's share (n,) of the measured numbers.
+
     Constants, and as many harmonics as there are numbers for: finer waves would run through any
     few. Those along or about a joint's own axis come first.
     """
-    joints = max(len(kernel.slides), 1)
-    waves = numbers // (2 * _NUMBERS * joints)
+    waves = numbers // (2 * _NUMBERS)
     others = waves // _FOR_OTHERS
     joint, component, harmonic = kernel.terms.T
     along = component == np.where(kernel.slides[joint], 2, 5)
     # What the components across leave unused is for the one along.
-    used = min(others, int(harmonic[~along].max(initial=0)))
-    most = np.where(along, waves - 5 * used, others)
+    offered = int(harmonic[~along].max(initial=0))
+    used = np.minimum(others, offered)
+    most = np.where(along, (waves - 5 * used)[joint], others[joint])
     constants = len(kernel.slides) * joint_width(kernel)
     return np.concatenate([np.ones(constants, np.bool_), np.repeat(harmonic <= most, 2)])

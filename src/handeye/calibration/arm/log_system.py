@@ -15,8 +15,8 @@ from handeye.calibration.arm.rotations import turn_between
 from handeye.calibration.arm.system import Rows
 
 _CHUNK = 256
-# A part that changed may be farther from where it was than it can be from nominal.
-_JUMP = 30.0
+JUMP = 30.0
+"""A part that changed may be so much farther from where it was than it can be from nominal."""
 
 
 class Jump(NamedTuple):
@@ -51,7 +51,7 @@ class LogSystem:
         self.groups = np.concatenate([frames, prior_groups(kernel), np.full(len(changed), -1)])
         of_arm = shown_by(kernel, len(seen) * (6 if kernel.oriented else 3))
         self.shown = np.concatenate([frames < 0, of_arm, np.ones(len(changed), np.bool_)])
-        self.tolerance = np.concatenate([tolerance, _JUMP * tolerance[changed]])
+        self.tolerance = np.concatenate([tolerance, JUMP * tolerance[changed]])
         self.n_rows = len(seen)
         self.n_channels = 2 if kernel.oriented else 1
         self._ends = [0, *(jump.at for jump in jumps), len(seen)]

@@ -57,7 +57,17 @@ class Measurement(Protocol):
 
     @property
     def joints(self) -> Array:
-        """(N, n) encoder readings [rad] or [m]."""
+        """(N, n) encoder readings [rad] or [m], of the joints between `base` and `link`."""
+        ...
+
+    @property
+    def link(self) -> str | None:
+        """The link of the flange, that of the arm unless another one is named."""
+        ...
+
+    @property
+    def base(self) -> str | None:
+        """The link of the base, likewise."""
         ...
 
     @property

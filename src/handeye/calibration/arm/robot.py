@@ -26,8 +26,8 @@ from handeye.randomness import stream
 
 SETTINGS = Settings(
     hypotheses=(
-        Hypothesis("with error curves, steady"),
-        Hypothesis("with error curves, its base or marker drifting", walk=1e-4, memory=10_000.0),
+        Hypothesis("steady, with error curves"),
+        Hypothesis("drifting at its base or marker, with error curves", walk=1e-4, memory=10_000.0),
     ),
     odds=1e9,
     envelope=0.2,

@@ -18,7 +18,15 @@ from handeye.calibration.arm.system import System
 FREEDOM = 5.0
 """Degrees of freedom of the t: tails such as real sensors have."""
 
+OF_NORMAL = 0.8855
+"""The scale that is found for 3-vectors that are normal, over their standard deviation.
+
+The root of E[(5 + 3) u / (5 + u)] = 3 with u = chi^2_3 / s^2.
+"""
+
 _SMALLEST = 1e-9
+# Information, over that of a prior, of which rounding loses no more than some thousandths of it.
+_MOST_TOLD = 1e13
 
 
 class Noise(NamedTuple):
@@ -43,22 +51,35 @@ class Noise(NamedTuple):
         return self.tails * (FREEDOM + self.values) / (FREEDOM + np.nan_to_num(self.squares))
 
 
-def first_noise(system: System, x: Array) -> Noise:
-    """As if all residuals at x (n,) were noise, by their medians."""
+def least_noise(system: System, x: Array) -> Array:
+    """(C,) the least noise of which rounding lets a fit near x (n,) make anything.
+
+    With less, information in units of the priors' widths is so great that these are lost in it.
+    """
+    told = np.zeros((system.n_channels, len(x)))
+    for rows in system.rows(x):
+        for k, c in enumerate(rows.channels):
+            told[c] += np.sum((rows.slopes[:, k] * system.tolerance) ** 2, axis=0)
+    return np.maximum(np.sqrt(told.max(axis=1) / _MOST_TOLD), _SMALLEST)
+
+
+def first_noise(system: System, x: Array, least: Array) -> Noise:
+    """As if all residuals at x (n,) were noise, by their medians, and at least (C,)."""
     squares, _, values = _errors(system, x)
-    noise = np.maximum(np.sqrt(np.nanmedian(squares, axis=0) / values), _SMALLEST)
+    noise = np.maximum(np.sqrt(np.nanmedian(squares, axis=0) / values), least)
     return Noise(noise, squares / noise**2, values)
 
 
-def noise_at(system: System, x: Array, known: Array, before: Noise) -> Noise:
-    """Noise at x; known (C,) is how many values of each channel the unknowns took up."""
+def noise_at(system: System, x: Array, known: Array, before: Noise, least: Array) -> Noise:
+    """Noise at x, at least (C,); known (C,) is how many values the unknowns took up."""
     errors, stated, values = _errors(system, x)
     weights = before.weights() / before.tails
     noise = np.empty(len(values))
     for c in range(len(values)):
         has = np.isfinite(errors[:, c])
         free = max(float(values[c] * has.sum() - known[c]), 1.0)
-        noise[c] = _beyond(weights[has, c] * errors[has, c], stated[has, c], free)
+        beyond = _beyond(weights[has, c] * errors[has, c], stated[has, c], free)
+        noise[c] = max(beyond, least[c])
     return Noise(noise, errors / np.maximum(stated + noise**2, _SMALLEST**2), values)
 
 

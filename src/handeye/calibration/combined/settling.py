@@ -16,7 +16,7 @@ from handeye.calibration.arm.kernels import joint_at
 from handeye.calibration.arm.log_system import Jump, LogSystem
 from handeye.calibration.arm.robot import ArmRobot
 from handeye.calibration.arm.sheet import ArmSheet, ChosenTerms, CurveTerms
-from handeye.calibration.arm.student import FREEDOM
+from handeye.calibration.arm.student import FREEDOM, OF_NORMAL
 from handeye.calibration.combined.calibrator import Combined
 from handeye.calibration.placed_arm import PlacedArm
 from handeye.observations import PointObservation
@@ -107,10 +107,10 @@ def _calibrator(model: PlacedArm, sheet: ArmSheet, system: LogSystem, found: Pos
     wanted = np.concatenate(
         [np.ones(constants, np.bool_), np.repeat(kept, 2), np.ones(len(found.x) - n, np.bool_)]
     )
-    noise = float(found.noise[0])
+    noise = float(found.noise[0]) / OF_NORMAL
     turn = model.turn_std
     if kernel.oriented:
-        own = found.noise[1] ** 2
+        own = (found.noise[1] / OF_NORMAL) ** 2
         turn = float(np.sqrt(max(own - (noise / kernel.lever) ** 2, _OWN_TURN * own)))
     arm = replace(model, turn_std=turn, noise=noise if model.noise > 0.0 else 0.0)
     chosen = ChosenTerms.of(kernel.terms[kept], ends_of(kernel, system.seen))

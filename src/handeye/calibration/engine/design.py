@@ -1,15 +1,15 @@
 """Which pose to visit next: task-optimal design, in compiled loops over candidates."""
 
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from handeye._compiled import compiled
 from handeye.arrays import Array
 from handeye.calibration.engine.chain import reach, residuals
 from handeye.calibration.engine.engine import Engine
 from handeye.calibration.engine.filter import Bank, Rules, unknowns
-from handeye.calibration.engine.roots import spread_of
 
 
 @compiled
@@ -48,13 +48,10 @@ def without_gauges(lines: Array, gauges: Array) -> None:
 
 
 @compiled
-def spreads_of(
+def slopes_of(
     kernel: NamedTuple, rules: Rules, bank: Bank, h: int, doubt: float, rows: Array, out: Array
 ) -> None:
-    """out (N, k, n), overwritten: slopes of the residuals at rows (N, w) times R^-1.
-
-    With w one of them, `w w^T` is the covariance of the residuals.
-    """
+    """out (N, k, n), overwritten: slopes of the residuals at rows (N, w), in tolerances."""
     k, n = out.shape[1:]
     x, values, by = np.empty(n), np.empty(k), np.empty((k, n))
     unknowns(rules, h, bank.d[h], x)
@@ -62,24 +59,37 @@ def spreads_of(
         residuals(kernel, x, rows[i], doubt, values, by)
         for j in range(n):
             for c in range(k):
-                by[c, j] *= rules.spreads[h, j]
-        without_gauges(by, rules.gauges[h])
-        spread_of(bank.roots[h], by, out[i])
+                out[i, c, j] = by[c, j] * rules.spreads[h, j]
+        without_gauges(out[i], rules.gauges[h])
 
 
 @compiled
-def hand_spreads_of(
+def hand_slopes_of(
     kernel: NamedTuple, rules: Rules, bank: Bank, h: int, doubt: float, rows: Array, out: Array
 ) -> None:
-    """out (N, m, n), overwritten: the same of the hand, whose covariance [m^2] they tell."""
+    """out (N, m, n), overwritten: the same of the hand [m]."""
     m, n = out.shape[1:]
     k = bank.lines.shape[2]
-    x, by, hand, to_metres = np.empty(n), np.empty((k, n)), np.empty((m, n)), np.empty((m, k))
+    x, by, to_metres = np.empty(n), np.empty((k, n)), np.empty((m, k))
     unknowns(rules, h, bank.d[h], x)
     for i in range(len(rows)):
-        hand_slopes(kernel, x, rules.spreads[h], rows[i], doubt, by, hand, to_metres)
-        without_gauges(hand, rules.gauges[h])
-        spread_of(bank.roots[h], hand, out[i])
+        hand_slopes(kernel, x, rules.spreads[h], rows[i], doubt, by, out[i], to_metres)
+        without_gauges(out[i], rules.gauges[h])
+
+
+def spreads(engine: Engine, rows: Array, *, hand: bool) -> Array:
+    """Slopes J of the residuals (N, k, n), or of the hand (N, m, n) [m], at rows (N, w), by R^-1.
+
+    With w one of them, `w w^T` is the covariance of the residuals, or of the hand [m^2]. By the
+    hypothesis that leads among those with curves.
+    """
+    h, n = engine.flexible(), len(engine.x)
+    out = np.empty((len(rows), engine.chain.n_hand if hand else engine.chain.n_values, n))
+    known = (engine.chain.kernel, engine.rules, engine.bank, h, engine.doubt)
+    (hand_slopes_of if hand else slopes_of)(*known, rows, out)
+    root = engine.bank.roots[h][:, :n]
+    solved = cast("Array", solve_triangular(root, out.reshape(-1, n).T, trans=1))
+    return solved.T.reshape(out.shape)
 
 
 def task_gains(engine: Engine, tasks: Array, candidates: Array) -> tuple[Array, float]:
@@ -90,13 +100,9 @@ def task_gains(engine: Engine, tasks: Array, candidates: Array) -> tuple[Array, 
     together. By the hypothesis that leads among those with curves: a robot thought to be straight
     has nothing more to learn about its curves, and would never look.
     """
-    h, n, k, m = engine.flexible(), len(engine.x), engine.chain.n_values, engine.chain.n_hand
-    parts = np.empty((len(tasks), m, n)), np.empty((len(candidates), k, n))
-    known = (engine.chain.kernel, engine.rules, engine.bank, h, engine.doubt)
-    hand_spreads_of(*known, tasks, parts[0])
-    spreads_of(*known, candidates, parts[1])
-    B, w = parts[0].reshape(-1, n), parts[1]
+    B = spreads(engine, tasks, hand=True).reshape(-1, len(engine.x))
+    w = spreads(engine, candidates, hand=False)
     across = w @ B.T
-    S = np.eye(k) + w @ w.transpose(0, 2, 1)
+    S = np.eye(engine.chain.n_values) + w @ w.transpose(0, 2, 1)
     gains: Array = np.sum(across * np.linalg.solve(S, across), axis=(1, 2)) / len(tasks)
     return gains, float(np.sum(B**2) / len(tasks))

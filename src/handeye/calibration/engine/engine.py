@@ -3,6 +3,7 @@
 from collections import deque
 
 import numpy as np
+from scipy.linalg import solve_triangular
 from scipy.stats import chi2
 
 from handeye.arrays import Array, Integers
@@ -218,7 +219,7 @@ class Engine:
         for h, share in enumerate(self.shares):
             if share > 1e-6:
                 spread = self.rules.spreads[h]
-                half = spread[:, np.newaxis] * np.linalg.inv(self.bank.roots[h, :, :n])
+                half = solve_triangular(self.bank.roots[h, :, :n], np.diag(spread), trans=1).T
                 off = spread * self.bank.d[h] - self.x
                 total += share * (half @ half.T + np.outer(off, off))
         return total

@@ -30,8 +30,8 @@ class Hypothesis:
 
 HYPOTHESES = (
     Hypothesis("as drawn but for its parameters", curved=False),
-    Hypothesis("with error curves, steady"),
-    Hypothesis("with error curves, drifting", walk=0.005, memory=10_000.0),
+    Hypothesis("steady, with error curves"),
+    Hypothesis("drifting, with error curves", walk=0.005, memory=10_000.0),
 )
 
 

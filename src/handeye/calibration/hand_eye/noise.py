@@ -99,7 +99,8 @@ def improved(
     for _ in range(_ROUNDS):
         inverse = np.linalg.inv(covariances(v, V))
         scaled = inverse @ J
-        information = (J * good[:, None, None]).reshape(-1, p).T @ scaled.reshape(-1, p) + prior
+        weighed = (J * good[:, None, None]).reshape(r.size, p)
+        information = weighed.T @ scaled.reshape(r.size, p) + prior
         spread = np.asarray(np.linalg.inv(information + np.eye(p)), dtype=np.float64)
         left = inverse - good[:, None, None] * (scaled @ spread @ scaled.swapaxes(1, 2))
         unit = (inverse @ r[..., None])[..., 0]

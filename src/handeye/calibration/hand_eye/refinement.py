@@ -24,8 +24,8 @@ MOST_ROUNDS = 60
 _MOST_STEPS = 6
 # Share of gross samples before the first look.
 _GROSS = 0.2
-# The stated tolerances count as much as this many links' errors that were seen.
-_STATED = 6.0
+# The stated tolerances count as much as the errors of this many links that were seen.
+_STATED = 1.0
 
 
 class Fit(NamedTuple):
@@ -106,8 +106,8 @@ class Refinement:
         J = self.model.jacobian(fit.guess) @ basis
         inverse = np.linalg.inv(noise.covariances(fit.variances, self.carriers(fit.guess)))
         counted = fit.belief.good * robust.sharpness(fit.belief.freedom)
-        q = J.shape[2]
-        return (J * counted[:, None, None]).reshape(-1, q).T @ (inverse @ J).reshape(-1, q)
+        shape = J.shape[0] * J.shape[1], J.shape[2]
+        return (J * counted[:, None, None]).reshape(shape).T @ (inverse @ J).reshape(shape)
 
     @property
     def _n_links(self) -> int:
@@ -120,6 +120,8 @@ class Refinement:
 
         The last keeps what is not determined from running away; once settled it is nothing.
         """
+        if not basis.shape[1]:
+            return guess
         model, n = self.model, self._n_links
         roots = np.linalg.cholesky(np.linalg.inv(C)).swapaxes(1, 2)
         roots = roots * np.sqrt(belief.weights)[:, None, None]

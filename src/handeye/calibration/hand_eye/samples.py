@@ -6,7 +6,7 @@ from typing import Literal, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from handeye.arrays import Array, Integers, finite
+from handeye.arrays import Array, Booleans, Integers, finite
 from handeye.errors import InvalidInput
 from handeye.geometry import invert, make_pose, nearest_rotation
 
@@ -82,13 +82,23 @@ def poses(value: ArrayLike, name: str) -> Array:
     T = finite(value, name)
     if T.ndim != 3 or T.shape[1:] != (4, 4):
         raise InvalidInput(f"{name} must be poses of shape (N, 4, 4), got {T.shape}")
+    wrong = np.flatnonzero(~_are_poses(T))
+    if wrong.size:
+        i = int(wrong[0])
+        if _are_poses(T[i : i + 1].swapaxes(1, 2))[0]:
+            raise InvalidInput(
+                f"{name}[{i}] is no pose: it is transposed, with the translation in its last row"
+            )
+        raise InvalidInput(
+            f"{name}[{i}] is no pose: it needs a right-handed rotation above the last row "
+            "(0, 0, 0, 1)"
+        )
+    return make_pose(nearest_rotation(T[:, :3, :3]), T[:, :3, 3])
+
+
+def _are_poses(T: Array) -> Booleans:
+    """Whether matrices (N, 4, 4) are a right-handed rotation and a translation, (N,)."""
     R = T[:, :3, :3]
     off = np.abs(R @ R.swapaxes(1, 2) - np.eye(3)).max(axis=(1, 2))
-    wrong = (off > _NO_ROTATION) | (np.linalg.det(R) < 0.0)
-    wrong |= np.abs(T[:, 3] - np.array([0.0, 0.0, 0.0, 1.0])).max(axis=1) > _NO_ROTATION
-    if wrong.any():
-        raise InvalidInput(
-            f"{name}[{int(np.flatnonzero(wrong)[0])}] is no pose: it needs a right-handed rotation "
-            "above the last row (0, 0, 0, 1)"
-        )
-    return make_pose(nearest_rotation(R), T[:, :3, 3])
+    last = np.abs(T[:, 3] - np.array([0.0, 0.0, 0.0, 1.0])).max(axis=1)
+    return (off <= _NO_ROTATION) & (np.linalg.det(R) > 0.0) & (last <= _NO_ROTATION)

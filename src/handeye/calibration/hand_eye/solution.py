@@ -11,6 +11,7 @@ from handeye.arrays import Array, shaped
 from handeye.calibration.hand_eye.beliefs import Mounting, Tolerances
 from handeye.calibration.hand_eye.directions import Directions, directions
 from handeye.calibration.hand_eye.links import Links
+from handeye.calibration.hand_eye.mistakes import Reading, mistakes
 from handeye.calibration.hand_eye.model import Guess, Model, motions
 from handeye.calibration.hand_eye.refinement import Fit, Refinement
 from handeye.calibration.hand_eye.result import HandEye
@@ -85,11 +86,16 @@ def solve_arm(
     departures = np.tile(np.eye(4), (q.shape[1] - 1, 1, 1))
     begin = replace(best.guess, links=departures)
     refinement = Refinement(model, tolerances or Tolerances())
-    return _finished(samples, refinement, [begin], mounting or Mounting())
+    in_degrees = Reading("joints are in degrees", arm.poses(np.radians(q)), np.asarray(sensed))
+    return _finished(samples, refinement, [begin], mounting or Mounting(), in_degrees)
 
 
 def _finished(
-    samples: Samples, refinement: Refinement, begin: Sequence[Guess], mounting: Mounting
+    samples: Samples,
+    refinement: Refinement,
+    begin: Sequence[Guess],
+    mounting: Mounting,
+    *others: Reading,
 ) -> HandEye:
     fit = _best(refinement, begin)
     found = directions(refinement, fit)
@@ -99,7 +105,8 @@ def _finished(
         guess = _at_mounting(samples.setup, fit.guess, found, mounting)
         fit = refinement.fit(guess, found.closed)
         found = directions(refinement, fit)
-    return summary(samples, refinement, fit, found, mounting)
+    suspected = () if refinement.tied else mistakes(samples, fit.guess, *others)
+    return summary(samples, refinement, fit, found, mounting, suspected)
 
 
 def _best(refinement: Refinement, begin: Sequence[Guess]) -> Fit:

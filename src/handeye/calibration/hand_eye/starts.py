@@ -29,14 +29,16 @@ _LEAST_SHARE = 0.01
 _LEAST = 1e-12
 
 
-def starts(samples: Samples, *, free_scale: bool, tied: bool) -> list[Guess]:
+def starts(
+    samples: Samples, *, free_scale: bool, tied: bool, triples: int = _TRIPLES
+) -> list[Guess]:
     """Guesses in the order in which they satisfy most samples; at least one.
 
-    tied: camera and target are the same thing, P = Q (`model.motions`).
+    tied: camera and target are the same thing, P = Q (`model.motions`). triples: how many are tried
     """
     n = len(samples.sensed)
     rng = np.random.default_rng(n)
-    triples = np.array([rng.choice(n, min(3, n), replace=False) for _ in range(_TRIPLES)])
+    few = np.array([rng.choice(n, min(3, n), replace=False) for _ in range(triples)])
     everything = np.arange(n)[None]
     found: list[tuple[Array, Array, Array]] = []
 
@@ -48,13 +50,14 @@ def starts(samples: Samples, *, free_scale: bool, tied: bool) -> list[Guess]:
         found.append(_placed(G, S, *turns, free_scale=free_scale, tied=tied))
 
     add(everything, None)
-    add(np.unique(np.sort(triples, axis=1), axis=0), None)
+    add(np.unique(np.sort(few, axis=1), axis=0), None)
     # No rotation is more than 63 degrees from one of the cube's: where rotations leave a turn open,
     # one of these is near the turn that the shifts want.
     cube = Rotation.create_group("O").as_matrix()
     add(np.repeat(everything, len(cube), axis=0), cube)
     P, Q, scale = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    rank = _judged(samples, P, Q, scale)
+    turn, shift = disagreements(samples, P, Q, scale)
+    rank = np.log(turn + _LEAST) + np.log(shift + _LEAST)
     order = dict.fromkeys([*np.argsort(rank, kind="stable")[:_BEST].tolist(), 0])
     return [Guess(P[k], Q[k], float(scale[k]), np.zeros((0, 4, 4))) for k in order]
 
@@ -73,8 +76,10 @@ def _placed(
         system[..., 3:6] = 0.0
     seen = (R_P[:, None] @ S[..., :3, 3, None])[..., 0]
     wanted = -G[..., :3, 3]
+    # As long as the rest, whatever the camera's unit, or small singular values would be lost.
+    unit = np.linalg.norm(seen, axis=-1).mean(axis=1) + _LEAST
     if free_scale:
-        system[..., 6] = -seen
+        system[..., 6] = -seen / unit[:, None, None]
     else:
         wanted = wanted + seen
     flat = system.reshape(k, -1, unknowns)
@@ -83,7 +88,7 @@ def _placed(
     scale = np.ones(k)
     if free_scale:
         # A scale that is not positive means that the triple says nothing about it.
-        scale = 1.0 / np.maximum(x[:, 6], 1e-9)
+        scale = unit / np.maximum(x[:, 6], 1e-9)
     return make_pose(R_P, camera), make_pose(R_Q, target), scale
 
 
@@ -111,14 +116,15 @@ def _agreeing(G: Array, S: Array, R_P: Array, *, tied: bool) -> tuple[Array, Arr
     return (camera, camera) if tied else (camera, target)
 
 
-def _judged(samples: Samples, P: Array, Q: Array, scale: Array) -> Array:
-    """log of median turn plus log of median shift by which samples disagree, (K,)."""
+def disagreements(samples: Samples, P: Array, Q: Array, scale: Array) -> tuple[Array, Array]:
+    """Medians over samples of turn [rad] and shift [m] by which K guesses miss them, each (K,)."""
     G, S = samples.carriers, samples.sensed
     to_camera = P[:, None, :3, :3].swapaxes(-1, -2)
     R = to_camera @ G[:, :3, :3] @ Q[:, None, :3, :3]
     reach = (G[:, :3, :3] @ Q[:, None, :3, 3:])[..., 0] + G[:, :3, 3] - P[:, None, :3, 3]
     t = (to_camera @ reach[..., None])[..., 0]
     # |R - R'| in the Frobenius norm is sqrt(8) times the sine of half the angle.
-    turn = np.linalg.norm(R - S[:, :3, :3], axis=(-2, -1))
-    shift = np.linalg.norm(t - S[:, :3, 3] / scale[:, None, None], axis=-1)
-    return np.log(np.median(turn, axis=1) + _LEAST) + np.log(np.median(shift, axis=1) + _LEAST)
+    half = np.linalg.norm(R - S[:, :3, :3], axis=(-2, -1)) / np.sqrt(8.0)
+    turn: Array = 2.0 * np.arcsin(np.minimum(half, 1.0))
+    shift: Array = np.linalg.norm(t - S[:, :3, 3] / scale[:, None, None], axis=-1)
+    return np.asarray(np.median(turn, axis=1)), np.asarray(np.median(shift, axis=1))

@@ -15,14 +15,24 @@ from handeye.calibration.hand_eye.wording import NAMES, advice, in_words
 
 _FEW = 8
 _MANY_WRONG = 0.3
+# Information about what could be anywhere [1/rad^2], [1/m^2].
+_NOTHING = 1e-6
 # A sample that leaves less than this of its own variance is the only one to tell something.
 _ALONE = 1e-6
 
 
 def summary(
-    samples: Samples, refinement: Refinement, fit: Fit, found: Directions, mounting: Mounting
+    samples: Samples,
+    refinement: Refinement,
+    fit: Fit,
+    found: Directions,
+    mounting: Mounting,
+    suspected: tuple[str, ...],
 ) -> HandEye:
-    """Results in the frames and the order in which the samples came."""
+    """Results in the frames and the order in which the samples came.
+
+    suspected: what was probably meant in another way (`mistakes`).
+    """
     model, guess = refinement.model, fit.guess
     C = _covariance(samples, refinement, fit, found, mounting)
     in_hand = samples.setup == "eye_in_hand"
@@ -61,7 +71,7 @@ def summary(
         links=None if model.links is None else guess.links,
         condition=found.condition,
         undetermined=words,
-        status=_status(samples, words, of_both, good, mounting),
+        status="\n".join([*suspected, *_status(samples, words, of_both, good, mounting)]),
     )
 
 
@@ -73,7 +83,8 @@ def _covariance(
     prior = closed.T @ np.diag(refinement.prior(fit.tolerances)) @ closed
     told = closed @ np.linalg.inv(refinement.information(fit, closed) + prior) @ closed.T
     if opened.shape[1]:
-        expected = np.zeros(len(told))
+        # Of what is in the base nothing is expected.
+        expected = np.full(len(told), _NOTHING)
         each = np.repeat([mounting.turn_std, mounting.position_std], 3) ** -2.0
         first = 0 if samples.setup == "eye_in_hand" else 6
         expected[first : first + 6] = each
@@ -105,8 +116,9 @@ def _influence(refinement: Refinement, fit: Fit, found: Directions, C: Array) ->
     r = refinement.model.residuals(fit.guess)
     w = np.maximum(fit.belief.weights, 1e-9)[:, None, None]
     prior = found.closed.T @ np.diag(refinement.prior(fit.tolerances)) @ found.closed
-    q = J.shape[2]
-    told = (J * w).reshape(-1, q).T @ (np.linalg.inv(C) @ J).reshape(-1, q) + prior
+    q = max(J.shape[2], 1)
+    shape = J.shape[0] * J.shape[1], J.shape[2]
+    told = (J * w).reshape(shape).T @ (np.linalg.inv(C) @ J).reshape(shape) + prior
     through = J @ np.linalg.inv(told)
     left = C / w - through @ J.swapaxes(1, 2)
     roots = np.linalg.cholesky(np.linalg.inv(C / w))
@@ -119,7 +131,7 @@ def _influence(refinement: Refinement, fit: Fit, found: Directions, C: Array) ->
 
 def _status(
     samples: Samples, words: tuple[str, ...], C: Array, good: Array, mounting: Mounting
-) -> str:
+) -> list[str]:
     names = NAMES[samples.setup]
     lines: list[str] = []
     if words:
@@ -144,4 +156,4 @@ def _status(
         lines.append(f"{len(wrong)} of {len(good)} samples look wrong and do not count: {which}")
     if len(wrong) > _MANY_WRONG * len(good):
         lines.append("with so many wrong, check setup, units, and which pose belongs to which")
-    return "\n".join(lines)
+    return lines

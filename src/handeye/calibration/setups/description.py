@@ -1,7 +1,8 @@
 """A YAML file that says what was measured of an arm, by what, and what is known beforehand.
 
     robot: ur10                         # a URDF file or a robot known by name
-    tip: tool0                          # optional: link of the flange; eye: link of the base
+    tip: tool0                          # optional: link of the flange; eye: link of the base,
+                                        # of measurements that name no others (link:, base:)
     measurements:                       # one or more; see `setups.kinds.KINDS`
       - kind: points
         file: tracker.csv               # columns <joint>_rad, x_m, y_m, z_m
@@ -32,7 +33,7 @@ import numpy as np
 
 from handeye.arrays import Array
 from handeye.calibration.arm.estimator import FINE
-from handeye.calibration.arm.measurements import Frame, Instrument, Points, agreeing
+from handeye.calibration.arm.measurements import Frame, Instrument, Points, agreeing, seats
 from handeye.calibration.arm.measurements.unknowns import Unknown
 from handeye.calibration.arm.sheet import ArmSheet, CurveTerms
 from handeye.calibration.setups.cameras import read_cameras
@@ -84,18 +85,20 @@ def load_description(
     """
     file = Path(path)
     parts = read_yaml(file).table(_PARTS, ("measurements",))
-    arm = arm or _robot(file, parts)
+    entries = parts["measurements"].items()
+    if not entries:
+        raise parts["measurements"].error(f"is empty: list one or more of {', '.join(KINDS)}")
+    arm = arm or _robot(file, parts, entries)
     frames = {name: _frame(name, entry) for name, entry in _named(parts, "frames")}
     points = {name: _points(name, entry) for name, entry in _named(parts, "points")}
     cameras, sizes = read_cameras(_named(parts, "cameras"), file.parent)
     given = Given(arm, file.parent, skip_bad, frames, points, cameras, sizes)
-    entries = parts["measurements"].items()
-    if not entries:
-        raise parts["measurements"].error(f"is empty: list one or more of {', '.join(KINDS)}")
     both = [made(entry, given) for entry in entries]
     placed, sources = [one for one, _ in both], tuple(source for _, source in both)
     with parts["measurements"].blamed():
-        together = agreeing(placed, [arm.poses(one.joints) for one in placed])
+        seats(arm, placed)
+        flanges = [arm.between(one.link, one.base).poses(one.joints) for one in placed]
+        together = agreeing(placed, flanges)
     stated: dict[str, Unknown] = {**frames, **points, **cameras}
     _all_used(parts, together, stated)
     begun = tuple(
@@ -105,11 +108,15 @@ def load_description(
     return Description(arm, begun, tuple(together), _sheet(parts), sources, stated, sizes)
 
 
-def _robot(file: Path, parts: dict[str, Entry]) -> UrdfArm:
+def _robot(file: Path, parts: dict[str, Entry], entries: Sequence[Entry]) -> UrdfArm:
     if "robot" not in parts:
         raise InvalidInput(f"{file}: says no `robot:`; add one, or give --robot (in Python: arm=)")
     spec = parts["robot"].text()
     tip, eye = (parts[key].text() if key in parts else None for key in ("tip", "eye"))
+    # Where every measurement names its own link, the robot need not have a usual one.
+    links = [entry.tables().get("link") for entry in entries]
+    if tip is None and links[0] is not None and None not in links:
+        tip = links[0].text()
     beside = file.parent / spec
     with parts["robot"].blamed():
         return load_arm(str(beside) if beside.is_file() else spec, tip, eye)

@@ -9,23 +9,21 @@ from scipy.linalg import solve_triangular
 
 from handeye.arrays import Array, Integers
 from handeye.calibration.arm.chain import arm_chain
-from handeye.calibration.arm.corrected import CorrectedArm, corrected
+from handeye.calibration.arm.corrected import CorrectedJoints
 from handeye.calibration.arm.estimator import FINE
 from handeye.calibration.arm.evidence import Posterior, solve
-from handeye.calibration.arm.kernels import TWIST
-from handeye.calibration.arm.measurements import Instrument
+from handeye.calibration.arm.measurements import Instrument, seats
 from handeye.calibration.arm.measurements.unknowns import Unknown
 from handeye.calibration.arm.problem import ArmProblem
 from handeye.calibration.arm.sheet import ArmSheet
 from handeye.calibration.arm.student import FREEDOM
+from handeye.calibration.arm.tree import OWN_FRAMES
 from handeye.calibration.engine.chain import Group
 from handeye.errors import InvalidInput
 from handeye.robots.urdf import UrdfArm
 
 # A row that counts less than this, where one as good as expected counts 1, is to be looked at.
 _DOUBTFUL = 0.25
-# Of the chain's unknowns, base and marker: here they belong to the measurements.
-_FRAMES = 2 * TWIST
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,9 +48,19 @@ class MixedFit:
         changes: Mapping[str, Array] = {n: x[at] for n, at in self.problem.places.items()}
         return tuple(one.moved(changes) for one in self.given)
 
-    def flanges(self, joints: Array) -> Array:
-        """T_base_flange (N, 4, 4) of the arm with its errors, at joints (N, n)."""
-        return self.problem.flanges(self.posterior.x, joints)
+    def flanges(self, joints: Array, link: str | None = None, base: str | None = None) -> Array:
+        """T_base_link (N, 4, 4) of the arm with its errors, at joints (N, n) between the two.
+
+        By default from the base to the flange of the arm.
+
+        Raises:
+            InvalidInput: links that are not there, or joints that are not those between them.
+        """
+        return self.problem.flanges(self.posterior.x, joints, link, base)
+
+    def flanges_of(self, one: Instrument) -> Array:
+        """The same at the rows of a measurement, between its links."""
+        return self.flanges(one.joints, one.link, one.base)
 
     @property
     def noise(self) -> dict[str, float]:
@@ -83,22 +91,21 @@ class MixedFit:
         return np.sqrt(np.diag(self.covariance)[places[name]])
 
     @cached_property
-    def corrected(self) -> CorrectedArm:
-        """The arm as fitted, but for its curves."""
-        x = self.posterior.x[: self.problem.n_arm]
-        whole = np.concatenate([np.zeros(_FRAMES), x])
-        return corrected(self.problem.kernel, self.problem.arm.stages(), whole)
+    def corrected(self) -> CorrectedJoints:
+        """The joints as fitted, but for their curves."""
+        return CorrectedJoints.of_tree(self.problem.tree, self.posterior.x)
 
     def of_arm(self) -> tuple[tuple[str, ...], tuple[str, ...], tuple[bool, ...], list[Group]]:
         """Of the arm's unknowns names, units and which are of curves; and its parts."""
-        chain = arm_chain(self.problem.kernel, self.problem.arm.stage_names, self.sheet)
+        tree = self.problem.tree
+        chain = arm_chain(tree.kernel, tree.names, self.sheet)
         parts = [
-            Group(part.words, tuple(place - _FRAMES for place in part.places))
+            Group(part.words, tuple(place - OWN_FRAMES for place in part.places))
             for part in chain.groups
-            if min(part.places) >= _FRAMES
+            if min(part.places) >= OWN_FRAMES
         ]
-        curved = tuple(chain.curved[_FRAMES:].tolist())
-        return chain.names[_FRAMES:], chain.units[_FRAMES:], curved, parts
+        curved = tuple(chain.curved[OWN_FRAMES:].tolist())
+        return chain.names[OWN_FRAMES:], chain.units[OWN_FRAMES:], curved, parts
 
     def doubtful(self) -> tuple[Integers, ...]:
         """Rows of each measurement that fit so badly that they hardly count."""
@@ -117,13 +124,16 @@ def fit_measurements(
 ) -> MixedFit:
     """The arm and all else that is unknown, from measurements of any kinds that were placed.
 
-    sheet: how far the arm may be from nominal; by default `ArmSheet` with curves `FINE`. Noise of
-    each channel, and which errors the arm has at all, are found too (`evidence`).
+    Measurements may be between different links of the robot (`Instrument.along`); a joint that
+    several pass is the same. sheet: how far the arm may be from nominal; by default `ArmSheet` with
+    curves `FINE`. Noise of each channel, and which errors the arm has at all, are found too
+    (`evidence`).
     after_each(round, rounds) is called after each round.
 
     Raises:
-        InvalidInput: as `ArmProblem`.
+        InvalidInput: as `ArmProblem` and `seats`.
     """
+    seats(arm, measurements)
     sheet = sheet or replace(ArmSheet(), curves=FINE)
     problem = ArmProblem(arm, measurements, sheet, sheet.curves)
     return MixedFit(problem, solve(problem, after_each), sheet, tuple(measurements))

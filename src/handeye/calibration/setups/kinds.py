@@ -1,6 +1,7 @@
 """The kinds of measurement that a description may list, and how each is read from its table."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from handeye.calibration.arm.measurements import (
     Touches,
     settled,
 )
+from handeye.calibration.setups.recordings import RECORDING, read_recording
 from handeye.calibration.setups.tables import (
     HEIGHT,
     PIXELS,
@@ -29,9 +31,14 @@ from handeye.calibration.setups.tables import (
 from handeye.errors import InvalidInput
 from handeye.geometry import make_pose, matrix_from_wxyz
 from handeye.io import columns as col
+from handeye.io.bags import is_bag
 from handeye.io.yaml_entries import Entry
+from handeye.robots.urdf import UrdfArm
 
-_COMMON = ("kind", "file", "columns", "name", "std")
+LINKS = ("link", "base")
+"""Keys that say between which links a measurement is, where these are not the robot's own."""
+
+_COMMON = ("kind", "file", "columns", "name", "std", *LINKS)
 
 
 class Kind(NamedTuple):
@@ -53,19 +60,44 @@ def made(entry: Entry, given: Given) -> tuple[Instrument, Source]:
         raise entry.error(f"needs kind, one of {', '.join(KINDS)}")
     kind = KINDS[entry.tables()["kind"].text(tuple(KINDS))]
     keys = entry.table((*_COMMON, *kind.keys), ("file",))
+    chain = chain_of(keys, given.arm)
+    given = replace(given, arm=chain)
     needed = kind.columns
     if "board" in keys:
         needed = (*needed, POINT)
     camera = keys["camera"].text() if "camera" in keys else "camera"
     picture = given.sizes.get(camera) if PIXELS[0] in needed else None
-    joints, columns, source = read_columns(keys, given, needed, kind.optional, picture)
+    path = given.folder / keys["file"].text()
+    if is_bag(path):
+        if RECORDING not in kind.keys:
+            raise keys["file"].error(
+                "is a recording, which is read for kind points and poses alone"
+            )
+        oriented = col.ORIENTATION[0] in needed
+        joints, columns, source = read_recording(path, keys, given, oriented=oriented)
+    elif RECORDING in keys:
+        raise keys[RECORDING].error("goes with a recording: .bag, .mcap, .db3 or a folder of them")
+    else:
+        joints, columns, source = read_columns(keys, given, needed, kind.optional, picture)
     listed = Listed(entry, keys, given, joints, columns)
     with entry.blamed():
         placed = kind.make(listed)
         stated = {**given.frames, **given.points}
         mine = {u.name: stated[u.name] for u in placed.unknowns if u.name in stated}
         placed = settled(placed.given(mine), listed.flanges)[0] if mine else placed
+        placed = placed.along(chain) if set(LINKS) & set(keys) else placed
     return placed, source
+
+
+def chain_of(keys: Mapping[str, Entry], arm: UrdfArm) -> UrdfArm:
+    """The chain that a measurement is of, by its keys `link` and `base` or as the arm's.
+
+    Raises:
+        InvalidInput: with line and key, for links that are not there or not moved.
+    """
+    named = {key: keys[key].text() for key in LINKS if key in keys}
+    with keys.get("link", keys.get("base", keys["file"])).blamed():
+        return arm.between(named.get("link"), named.get("base"))
 
 
 def _points(listed: Listed) -> Instrument:
@@ -153,9 +185,11 @@ def _stereo(listed: Listed) -> Instrument:
     )  # fmt: skip
 
 
+_SEEN = ("setup", "sensor", "target", RECORDING)
+
 KINDS: dict[str, Kind] = {
-    "points": Kind(("setup", "sensor", "target"), col.POSITION, _points, col.POSITION_STD),
-    "poses": Kind(("setup", "sensor", "target"), (*col.POSITION, *col.ORIENTATION), _poses),
+    "points": Kind(_SEEN, col.POSITION, _points, col.POSITION_STD),
+    "poses": Kind(_SEEN, (*col.POSITION, *col.ORIENTATION), _poses),
     "pixels": Kind(("setup", "sensor", "target", "camera", "board"), PIXELS, _pixels),
     "touches": Kind(("plate", "geometry", "geometry_within", "tip"), (PLACE,), _touches),
     "distances": Kind(("anchor", "tip", "zero_within"), ("distance_m",), _distances),

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from handeye.arrays import Array
+from handeye.arrays import Array, Booleans
 from handeye.calibration.arm.measurements import (
     Frame,
     Instrument,
@@ -58,22 +58,24 @@ def beside_arm(fit: MixedFit, stated: Mapping[str, Unknown]) -> dict[str, tuple[
 def parts_of(fit: MixedFit) -> tuple[PartChange, ...]:
     """The parts of the arm, those whose changes move what the flange carries farthest first.
 
-    Parts that the rows cannot tell from each other may move it far in opposite ways.
+    Over the rows that depend on the part. Parts that the rows cannot tell from each other may move
+    it far in opposite ways.
     """
     names, units, _, groups = fit.of_arm()
     n = fit.problem.n_arm
     x, tolerance = fit.posterior.x[:n], fit.problem.tolerance[:n]
     std = np.sqrt(np.diag(fit.covariance))[:n]
-    moves = _moves(fit) * x
+    moves = _moves(fit)
     parts: list[PartChange] = []
     for group in groups:
         places = list(group.places)
         most = places[int(np.argmax(np.abs(x[places] / tolerance[places])))]
-        moved: Array = np.linalg.norm(moves[:, :, places].sum(axis=2), axis=1)
+        moved = [shifts[:, :, places] @ x[places] for own, shifts in moves if own[places].all()]
         known = np.mean(1.0 - np.minimum(std[places] / tolerance[places], 1.0))
+        squares: Array = np.sum(np.concatenate(moved) ** 2, axis=1)
         parts.append(
             PartChange(
-                group.words, float(np.sqrt(np.mean(moved**2))), names[most], float(x[most]),
+                group.words, float(np.sqrt(np.mean(squares))), names[most], float(x[most]),
                 float(std[most]), units[most], float(known),
             )
         )  # fmt: skip
@@ -104,16 +106,21 @@ def carried(one: Instrument) -> Array:
     return (sight.target.reference @ middle)[:3]
 
 
-def _moves(fit: MixedFit) -> Array:
-    """By how much each unknown of the arm moves what the flange carries, (N, 3, n)."""
+def _moves(fit: MixedFit) -> list[tuple[Booleans, Array]]:
+    """Of each measurement, which of the arm's n unknowns it depends on, and what these do.
+
+    By how much each moves what the flange carries, (N, 3, n).
+    """
     every = max(sum(len(one.joints) for one in fit.measurements) // _ROWS, 1)
-    out: list[Array] = []
+    out: list[tuple[Booleans, Array]] = []
     for one in fit.measurements:
-        joints = one.joints[::every]
-        slopes = fit.problem.slopes(fit.posterior.x, joints)
-        lever = fit.flanges(joints)[:, :3, :3] @ carried(one)
-        out.append(slopes[:, :3] - cross_matrix(lever) @ slopes[:, 3:])
-    return np.concatenate(out)
+        ends, joints = (one.link, one.base), one.joints[::every]
+        own = np.zeros(fit.problem.n_arm, np.bool_)
+        own[fit.problem.chain(*ends).places] = True
+        slopes = fit.problem.slopes(fit.posterior.x, joints, *ends)
+        lever = fit.flanges(joints, *ends)[:, :3, :3] @ carried(one)
+        out.append((own, slopes[:, :3] - cross_matrix(lever) @ slopes[:, 3:]))
+    return out
 
 
 def _of_frame(

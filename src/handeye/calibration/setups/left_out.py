@@ -111,8 +111,9 @@ def _judged(
     found = fit.unknowns
     for i, one in enumerate(held):
         there = one.given({u.name: found[u.name] for u in one.unknowns if u.name in found})
-        before = residuals(one, fit.problem.arm.poses(one.joints))
-        after = residuals(there, fit.flanges(one.joints))
+        nominal = fit.problem.arm.between(one.link, one.base)
+        before = residuals(one, nominal.poses(one.joints))
+        after = residuals(there, fit.flanges_of(one))
         channels = np.array(one.channels)
         for channel, errors in after.items():
             n, stated = len(errors), one.std[:, channels == channel]

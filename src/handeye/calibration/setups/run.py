@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
 
 from handeye.arrays import Booleans, Integers
+from handeye.calibration.arm.measurements import seats
 from handeye.calibration.results import Parameter, PartChange
 from handeye.calibration.setups.description import Description
 from handeye.calibration.setups.fit import MixedFit, fit_measurements
@@ -77,6 +79,39 @@ class SetupResult:
         errors = self.errors[channel]
         table = self.described.sources[int(errors.measurement[k])]
         return table.file, int(table.rows[errors.row[k]])
+
+    @cached_property
+    def ends(self) -> tuple[str, ...]:
+        """Of each measurement, in words, between which links it is."""
+        arm = self.described.arm
+        chains = [arm.between(one.link, one.base) for one in self.fit.given]
+        return tuple(f"{chain.tip} from {chain.base}" for chain in chains)
+
+    @cached_property
+    def carried_by(self) -> Mapping[str, str]:
+        """Of each frame and unknown point the link, or the frame, in which it is."""
+        return seats(self.described.arm, self.fit.given)
+
+    def titled(self, name: str) -> str:
+        """A frame or point by its name, and where it is if that is not the same for all."""
+        seat = self.carried_by.get(name)
+        return f"{name}, on {seat}" if seat and len(set(self.ends)) > 1 else name
+
+    def joints_of(self, errors: ChannelErrors) -> dict[tuple[str, ...], list[int]]:
+        """Measurements that a channel has rows of, by the joints that they depend on."""
+        out: dict[tuple[str, ...], list[int]] = {}
+        used: list[int] = np.unique(errors.measurement).tolist()
+        for i in used:
+            one = self.fit.given[i]
+            names = self.fit.problem.chain(one.link, one.base).arm.joint_names
+            out.setdefault(names, []).append(i)
+        return out
+
+    @cached_property
+    def sliding(self) -> frozenset[str]:
+        """Joints that slide: their readings are in metres."""
+        tree = self.fit.problem.tree
+        return frozenset(np.array(tree.names)[tree.kernel.slides].tolist())
 
     @property
     def rejected(self) -> tuple[str, ...]:

@@ -4,22 +4,17 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from os import PathLike
 
-import numpy as np
-
-from handeye.arrays import Array, shaped
-from handeye.calibration.arm.evidence import Posterior
+from handeye.arrays import Array
 from handeye.calibration.arm.measurements.storage import from_arrays, to_arrays
+from handeye.calibration.arm.posterior import Posterior
 from handeye.calibration.arm.problem import ArmProblem
 from handeye.calibration.arm.sheet import ArmSheet
-from handeye.calibration.arm.student import Noise
-from handeye.calibration.setups.fit import MixedFit, values_of
+from handeye.calibration.setups.fit import MixedFit
 from handeye.io.tensors import Header, restore, write_tensors
 from handeye.robots.urdf import UrdfArm
 
 FORMAT = "handeye.setup"
 VERSION = 1
-
-_FOUND = ("x", "widths", "used", "squares")
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,8 +30,7 @@ def save_setup(
 ) -> None:
     """Write a fit with its measurements; an old file is replaced once the new one is complete."""
     arm = fit.problem.arm
-    arrays = {name: getattr(fit.posterior, name) for name in _FOUND}
-    arrays |= {"noise": fit.posterior.noise, "told": fit.posterior.rows_say(fit.posterior.used)}
+    arrays = fit.posterior.arrays()
     instruments: list[Header] = []
     for i, one in enumerate(fit.given):
         own, header = to_arrays(one)
@@ -73,15 +67,7 @@ def _fit(arrays: dict[str, Array], header: Header) -> MixedFit:
         for i, one in enumerate(header["measurements"])
     )
     problem = ArmProblem(arm, given, sheet, sheet.curves)
-    n, rows, channels = len(problem.tolerance), problem.n_rows, problem.n_channels
-    x, widths = (shaped(arrays[name], (n,), name) for name in ("x", "widths"))
-    used, squares = arrays["used"].astype(np.bool_), arrays["squares"]
-    if used.shape != (n,) or squares.shape != (rows, channels):
-        raise ValueError(f"used {used.shape}, squares {squares.shape}")
-    noise = shaped(arrays["noise"], (channels,), "noise")
-    values = np.array([values_of(given, channel) for channel in problem.channels], np.int64)
-    told = shaped(arrays["told"], (int(used.sum()),) * 2, "told")
-    posterior = Posterior(x, widths, used, squares, problem, Noise(noise, squares, values), told)
+    posterior = Posterior.restored(problem, arrays)
     return MixedFit(problem, posterior, sheet, given)
 
 

@@ -12,6 +12,7 @@ from handeye.calibration.hand_eye.samples import Setup
 from handeye.calibration.setups.units import check_units
 from handeye.errors import InvalidInput
 from handeye.io import columns as col
+from handeye.io.bags import BagReport
 from handeye.io.records import usable
 from handeye.io.tables import Table, read_table
 from handeye.io.yaml_entries import Entry
@@ -28,7 +29,7 @@ _SETUPS: tuple[Setup, ...] = ("eye_to_hand", "eye_in_hand")
 
 @dataclass(frozen=True, eq=False)
 class Given:
-    """What a description says apart from its measurements."""
+    """What a description says apart from its measurements; `arm` is what one of these is of."""
 
     arm: UrdfArm
     folder: Path
@@ -43,14 +44,16 @@ class Given:
 class Source:
     """Where the rows of a measurement come from.
 
-    file      the table
+    file      the table, or the recording
     rows      (N,) number of each row in the file, the header being row 1
     rejected  rows that were left out, and why
+    report    of a recording, what became of it
     """
 
     file: str
     rows: Integers
     rejected: tuple[str, ...]
+    report: BagReport | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ from handeye.calibration.arm.measurements.pixels import PixelSightings as PixelS
 from handeye.calibration.arm.measurements.poses import PoseSightings as PoseSightings
 from handeye.calibration.arm.measurements.positions import PointSightings as PointSightings
 from handeye.calibration.arm.measurements.positions import Touches as Touches
+from handeye.calibration.arm.measurements.seats import seats as seats
 from handeye.calibration.arm.measurements.seeing import Instrument as Instrument
 from handeye.calibration.arm.measurements.settling import agreeing as agreeing
 from handeye.calibration.arm.measurements.settling import settled as settled

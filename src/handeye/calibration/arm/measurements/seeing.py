@@ -17,6 +17,7 @@ from handeye.calibration.arm.measurements.unknowns import (
     wholes_of,
 )
 from handeye.errors import InvalidInput
+from handeye.robots.urdf import UrdfArm
 
 Given = TypeVar("Given", bound="Instrument | Sight")
 
@@ -31,10 +32,12 @@ UNITS = {
 class Instrument(ABC):
     """N rows of k values; a `Measurement`.
 
-    joints  (N, n) encoder readings [rad] or [m]
+    joints  (N, n) encoder readings [rad] or [m], of the joints between `base` and `link`
     sight   instrument, target and the point of each row
     std     standard deviations of the values as stated, (N, k), (k,) or one; 0: not stated
     name    of the instrument; the noise of one is not that of another. May be empty.
+    link    the link that is the flange here, "left_hand"; None for that of the arm that is fitted
+    base    the link that is the base here, "head"; None likewise
 
     Raises InvalidInput for arrays that do not fit together, and two unknowns of one name.
     """
@@ -43,6 +46,8 @@ class Instrument(ABC):
     sight: Sight
     std: Array = field(default_factory=lambda: np.zeros(1))
     name: str = ""
+    link: str | None = None
+    base: str | None = None
 
     @property
     @abstractmethod
@@ -125,6 +130,10 @@ class Instrument(ABC):
             InvalidInput: for a frame in the place of points, or the like.
         """
         return _given(self, others)
+
+    def along(self, chain: UrdfArm) -> Self:
+        """With the ends of a chain through the arm, whose joints are those of the rows."""
+        return replace(self, link=chain.tip, base=chain.base)
 
     def only(self, rows: Integers) -> Self:
         """Some of the rows."""

@@ -29,61 +29,80 @@ def settled(instrument: Placed, flanges: Array) -> tuple[Placed, float]:
     what the rows leave open stays near where it began. flanges: nominal T_base_flange (N, 4, 4).
     Returns too the median of what is left, which tells a better start from a worse one.
     """
-    widths = [_WIDE * block.tolerance for block in instrument.blocks]
-    left = _left(instrument, flanges)
-    if not widths:
-        return instrument, float(np.linalg.norm(left))
-    for _ in range(_TIMES):
-        placed = _fitted(instrument, flanges, widths, left)
-        before, left = left, _left(placed, flanges)
-        instrument = placed
-        if np.linalg.norm(left) > _WORTH * np.linalg.norm(before):
-            break
-    return instrument, float(np.linalg.norm(left))
+    (placed,), left = _together([instrument], [flanges])
+    return placed, left
 
 
 def agreeing(instruments: Sequence[Instrument], flanges: Sequence[Array]) -> list[Instrument]:
     """The same instruments, where what has one name in several has one reference.
 
-    It is the first one's; what else the later ones do not know is `settled` again beside it.
-    flanges: nominal T_base_flange (N, 4, 4) of each.
+    At first it is the first one's, and what else the later ones do not know is `settled` again
+    beside it; then all are, together. flanges: nominal T_base_flange (N, 4, 4) of each.
 
     Raises:
         InvalidInput: two different things have the same name.
     """
     found: dict[str, Unknown] = {}
     out: list[Instrument] = []
+    agreed = False
     for instrument, poses in zip(instruments, flanges, strict=True):
         shared = {
             block.name: found[block.name] for block in instrument.blocks if block.name in found
         }
         placed = instrument
         if shared:
+            agreed = True
             held = instrument.given({name: one.held() for name, one in shared.items()})
             placed = settled(held, poses)[0].given(shared)
         found |= {unknown.name: unknown for unknown in placed.unknowns if unknown.free.any()}
         out.append(placed)
-    return out
+    return _together(out, flanges)[0] if agreed else out
 
 
-def _fitted(instrument: Placed, flanges: Array, widths: Sequence[Array], scale: Array) -> Placed:
-    wide, ends = np.concatenate(widths), list(accumulate(map(len, widths)))[:-1]
+def _together(
+    instruments: Sequence[Placed], flanges: Sequence[Array]
+) -> tuple[list[Placed], float]:
+    """`settled` for several that share what has one name."""
+    placed = list(instruments)
+    left = [_left(one, poses) for one, poses in zip(placed, flanges, strict=True)]
+    if any(one.blocks for one in placed):
+        for _ in range(_TIMES):
+            placed = _fitted(placed, flanges, left)
+            before = left
+            left = [_left(one, poses) for one, poses in zip(placed, flanges, strict=True)]
+            if _size(left) > _WORTH * _size(before):
+                break
+    return placed, _size(left)
+
+
+def _fitted(
+    instruments: Sequence[Placed], flanges: Sequence[Array], scales: Sequence[Array]
+) -> list[Placed]:
+    blocks = {block.name: block for one in instruments for block in one.blocks}
+    ends = list(accumulate((len(block.names) for block in blocks.values()), initial=0))
+    places = dict(zip(blocks, map(slice, ends, ends[1:]), strict=False))
+    wide = _WIDE * np.concatenate([block.tolerance for block in blocks.values()])
 
     def linearised(z: Array) -> tuple[Array, Array]:
-        r, _, by_blocks = instrument.equations(flanges, tuple(np.split(wide * z, ends)))
-        slopes = np.concatenate(by_blocks, axis=2) * wide / scale[:, np.newaxis]
-        return (
-            np.concatenate([z, (r / scale).reshape(-1)]),
-            np.concatenate([np.eye(len(z)), slopes.reshape(-1, len(z))]),
-        )
+        x, residuals, slopes = wide * z, [z], [np.eye(len(z))]
+        for one, poses, scale in zip(instruments, flanges, scales, strict=True):
+            own = tuple(x[places[block.name]] for block in one.blocks)
+            r, _, by_blocks = one.equations(poses, own)
+            by_all = np.zeros((*r.shape, len(z)))
+            for block, by_block in zip(one.blocks, by_blocks, strict=True):
+                at = places[block.name]
+                by_all[:, :, at] = by_block * wide[at] / scale[:, np.newaxis]
+            residuals.append((r / scale).reshape(-1))
+            slopes.append(by_all.reshape(-1, len(z)))
+        return np.concatenate(residuals), np.concatenate(slopes)
 
     found: Any = least_squares(
         lambda z: linearised(z)[0], np.zeros(len(wide)), lambda z: linearised(z)[1],
         loss="soft_l1", x_scale="jac", max_nfev=_ROUNDS,
     )  # fmt: skip
     x = cast("Array", wide * found.x)
-    names = [block.name for block in instrument.blocks]
-    return instrument.moved(dict(zip(names, np.split(x, ends), strict=True)))
+    changes = {name: x[at] for name, at in places.items()}
+    return [one.moved(changes) for one in instruments]
 
 
 def linear(system: Array, wanted: Array) -> Array:
@@ -98,3 +117,7 @@ def _left(instrument: Instrument, flanges: Array) -> Array:
     r = instrument.equations(flanges, own).residuals
     size = np.median(np.abs(r), axis=0) if len(r) else np.ones(r.shape[1])
     return np.maximum(size, _LEAST)
+
+
+def _size(left: Sequence[Array]) -> float:
+    return float(np.linalg.norm(np.concatenate(left)))
