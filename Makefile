@@ -21,8 +21,9 @@ demo: $(VENV)/.installed-all ## Watch a robot learn where its hand goes; writes 
 test: $(VENV)/.installed-dev ## Run the tests
 	$(PYTEST) $(TESTS)
 
+# Optimising what is only checked takes longer than the tests.
 test-boundscheck: $(VENV)/.installed-dev ## Run the tests with array bounds checked in compiled code
-	NUMBA_BOUNDSCHECK=1 $(PYTEST) $(TESTS)
+	NUMBA_BOUNDSCHECK=1 NUMBA_OPT=1 $(PYTEST) $(TESTS)
 
 test-nojit: $(VENV)/.installed-dev ## Run the tests with compilation off
 	NUMBA_DISABLE_JIT=1 $(PYTEST) $(TESTS)

@@ -37,7 +37,7 @@ def all_text(figure: Figure) -> str:
 
 def test_every_figure_of_the_chapters_is_drawn_or_listed_with_a_reason():
     assert list(FIGURES) == [
-        f"{c}.{n}" for c, most in ((3, 53), (4, 18), ("A", 8), (6, 13)) for n in range(1, most + 1)
+        f"{c}.{n}" for c, most in ((3, 53), (4, 18), ("A", 8), (6, 14)) for n in range(1, most + 1)
     ]
     listed = [figure for figure in FIGURES.values() if isinstance(figure, NotDrawn)]
     assert {figure.number for figure in listed} == {
@@ -77,6 +77,8 @@ def test_a_figure_shows_the_claims_that_name_it_and_those_that_it_declares():
 
 @pytest.mark.parametrize("figure", DRAWN, ids=lambda figure: figure.number)
 def test_a_figure_is_drawn_from_records_with_names_and_units(smoke_run: Stored, figure: Drawn):
+    if not all(EXPERIMENTS[name].can_run for name in figure.experiments):
+        pytest.skip("the folder of real measurements is absent")
     needed = [row for row in smoke_run.records.rows if row.experiment in figure.experiments]
     made = figure.draw(Records(needed))
     axes = [one for one in made.axes if shown(one)]
@@ -104,7 +106,7 @@ def test_a_figure_is_the_same_each_time(smoke_run: Stored):
 
 def test_figures_are_found_by_number():
     assert find_figure("3.22").number == "3.22"
-    with pytest.raises(InvalidInput, match=r"no figure 3\.54: figures go from 3\.1 to 6\.13"):
+    with pytest.raises(InvalidInput, match=r"no figure 3\.54: figures go from 3\.1 to 6\.14"):
         find_figure("3.54")
     with pytest.raises(InvalidInput, match=r"figure 3\.17 shows no result: a sketch"):
         find_figure("3.17")

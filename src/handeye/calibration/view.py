@@ -47,13 +47,17 @@ class View:
         """
         base, marker = model.placement.T_sensor_base, model.placement.T_flange_marker
         poses = base @ model.arm.poses(joints) @ marker
-        place = poses[:, :3, 3]
-        distance = np.linalg.norm(place, axis=1)
+        seen = self.within(poses[:, :3, 3])
+        if self.facing < np.pi:
+            seen &= turned_away(poses, self._front(model)) <= self.facing
+        return seen
+
+    def within(self, places: Array) -> Booleans:
+        """Which places (..., 3) in the sensor's frame are near enough, and not too far aside."""
+        distance = np.linalg.norm(places, axis=-1)
         seen = (distance >= self.near) & (distance <= self.far)
         if self.half_angle < np.pi:
-            seen &= place[:, 2] >= np.cos(self.half_angle) * distance
-        if self.facing < np.pi:
-            seen &= _turned_away(poses, self._front(model)) <= self.facing
+            seen &= places[..., 2] >= np.cos(self.half_angle) * distance
         return seen
 
     def _front(self, model: PlacedArm) -> float:
@@ -66,11 +70,11 @@ class View:
         low, high = np.maximum(model.low, model.arm.lower), np.minimum(model.high, model.arm.upper)
         joints = stream("view: front", len(low)).uniform(low, high, (_LOOKED, len(low)))
         base, marker = model.placement.T_sensor_base, model.placement.T_flange_marker
-        away = _turned_away(base @ model.arm.poses(joints) @ marker, 1.0)
+        away = turned_away(base @ model.arm.poses(joints) @ marker, 1.0)
         return 1.0 if np.median(away) <= 0.5 * np.pi else -1.0
 
 
-def _turned_away(poses: Array, front: float) -> Array:
+def turned_away(poses: Array, front: float) -> Array:
     """Angles (N,) between the z axis of poses (N, 4, 4) in a sensor's frame and the way to it."""
     distance = np.linalg.norm(poses[:, :3, 3], axis=1)
     along = -front * np.sum(poses[:, :3, 2] * poses[:, :3, 3], axis=1)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from rich.markup import escape
 
 from handeye.calibration.exporting import not_in_urdf
-from handeye.calibration.setups.description import load_description
+from handeye.calibration.setups.description import Description, load_description
 from handeye.calibration.setups.run import SetupResult, calibrate_setup
 from handeye.calibration.setups.storage import save_setup
 from handeye.cli.console import err, no_page, progress_bar, write_json
@@ -39,18 +39,7 @@ def calibrate_described(
         raise InvalidInput(
             "--setup holds out blocks of rows, or none: choose --validate blocks or none"
         )
-    if setup.robot == "planar":
-        raise InvalidInput("--setup needs an arm from a URDF file; planar has a log of its own")
-    if setup.robot is None and (setup.tip is not None or setup.eye is not None):
-        raise InvalidInput(
-            "--tip and --eye go with --robot; in a set-up `tip:` and `eye:` go with `robot:`"
-        )
-    arm = None if setup.robot is None else load_arm(setup.robot, setup.tip, setup.eye)
-    described = load_description(setup.file, arm, skip_bad=skip_bad)
-    for source in described.sources:
-        for line in source.report.lines() if source.report else ():
-            told = f"[dim]recording[/] {escape(source.file)}: {escape(line)}"
-            err().print(told, highlight=False, soft_wrap=True)
+    described = load_described(setup, skip_bad=skip_bad)
     check_wanted(wanted, described.measurements, described.sizes)
     with progress_bar("fitting, then judging", 1) as (progress, task):
         result = calibrate_setup(
@@ -71,6 +60,23 @@ def calibrate_described(
         write_json(as_data(result, str(setup.file)) | named, json_file)
     if json_file != "-":
         print_results(result, name, files)
+
+
+def load_described(setup: Described, *, skip_bad: bool) -> Description:
+    """What a file describes; what became of recordings is told on standard error."""
+    if setup.robot == "planar":
+        raise InvalidInput("--setup needs an arm from a URDF file; planar has a log of its own")
+    if setup.robot is None and (setup.tip is not None or setup.eye is not None):
+        raise InvalidInput(
+            "--tip and --eye go with --robot; in a set-up `tip:` and `eye:` go with `robot:`"
+        )
+    arm = None if setup.robot is None else load_arm(setup.robot, setup.tip, setup.eye)
+    described = load_description(setup.file, arm, skip_bad=skip_bad)
+    for source in described.sources:
+        for line in source.report.lines() if source.report else ():
+            told = f"[dim]recording[/] {escape(source.file)}: {escape(line)}"
+            err().print(told, highlight=False, soft_wrap=True)
+    return described
 
 
 def _page(result: SetupResult, name: str, path: Path) -> Path | None:

@@ -12,14 +12,19 @@ from handeye.calibration.log_checks import check_log
 from handeye.calibration.log_run import calibrate_log
 from handeye.calibration.placed import arm_of
 from handeye.calibration.placed_arm import PlacedArm
+from handeye.calibration.setups.storage import FORMAT as SETUP
+from handeye.calibration.setups.storage import load_setup
 from handeye.calibration.storage import load_model
 from handeye.calibration.suggesting import SuggestedPoses, suggest_poses
 from handeye.calibration.view import View
 from handeye.cli.bags import read_any
 from handeye.cli.console import check_places, err, out, progress_bar, table, write_json
 from handeye.cli.robot import ROBOT_HELP, load_robot
+from handeye.cli.setup import Described
+from handeye.cli.setup_suggestions import fitted_setup, suggest_for_setup
 from handeye.errors import InvalidInput
 from handeye.io.bags import BagOptions, is_bag
+from handeye.io.kinds import kind_of
 from handeye.io.targets import write_commands
 
 _MODEL = ".safetensors"
@@ -35,14 +40,23 @@ class _Named(NamedTuple):
 
 def suggest(
     source: Annotated[
-        Path,
+        Path | None,
         typer.Argument(
             help="Calibrated model that `handeye calibrate` saved, or a log or recording.",
             show_default=False,
         ),
-    ],
+    ] = None,
+    setup_file: Annotated[
+        Path | None,
+        typer.Option(
+            "--setup",
+            help="Instead, a YAML file that describes a set-up of any measurements.",
+            show_default=False,
+        ),
+    ] = None,
     robot: Annotated[
-        str | None, typer.Option(help=f"Of a log: {ROBOT_HELP}", show_default=False)
+        str | None,
+        typer.Option(help=f"Of a log, or instead of a set-up's: {ROBOT_HELP}", show_default=False),
     ] = None,
     tip: Annotated[
         str | None, typer.Option(help="Link of the URDF that carries the marker.")
@@ -99,16 +113,31 @@ def suggest(
 
     Each pose is the one that helps most, given the ones before. Poses keep the joints' limits, and
     with the options on what the sensor sees, the marker stays in its view; whether something stands
-    in the way is not known here.
+    in the way is not known here. Of a set-up, its description or its model, it is also said which
+    measurement to take there; a camera keeps all points in its picture.
     """
     check_places(None, json_file, None if target_file is None else str(target_file))
-    calibrator, names = _calibrator(source, _Named(robot, tip, eye), skip_bad=skip_bad)
+    named, view = _Named(robot, tip, eye), _view(field_of_view, near, far, facing)
+    if (source is None) == (setup_file is None):
+        raise InvalidInput("give a model or a log, or else --setup with a file that describes one")
+    setup = None
+    if setup_file is not None:
+        setup = fitted_setup(Described(setup_file, *named), skip_bad=skip_bad)
+    elif source is not None and _is_setup(source, named):
+        setup = load_setup(source)
+    if setup is not None:
+        suggest_for_setup(
+            setup, n, view=view, wider=wider, target_file=target_file, json_file=json_file
+        )
+        return
+    assert source is not None
+    calibrator, names = _calibrator(source, named, skip_bad=skip_bad)
     if not isinstance(calibrator, Combined):
         raise InvalidInput(
             f"{source}: a {type(calibrator).__name__} does not know how certain it is, so it "
             "cannot suggest poses: calibrate with --method combined"
         )
-    found = suggest_poses(calibrator, n, wider=wider, view=_view(field_of_view, near, far, facing))
+    found = suggest_poses(calibrator, n, wider=wider, view=view)
     if target_file is not None:
         write_commands(target_file, names, found.joints)
         err().print(f"{n} poses -> {escape(str(target_file))}", highlight=False)
@@ -116,6 +145,11 @@ def suggest(
         write_json(_as_data(names, found, calibrator), json_file)
     if json_file != "-":
         _print(names, found, calibrator)
+
+
+def _is_setup(source: Path, named: _Named) -> bool:
+    """Whether a file is the model of a set-up, of which everything is known."""
+    return source.suffix == _MODEL and named == _Named() and kind_of(source) == SETUP
 
 
 def _view(

@@ -1,5 +1,7 @@
 """Parts of the calibration page that name things: parts of the robot, rows, open directions."""
 
+from collections.abc import Sequence
+
 from handeye.arrays import Array
 from handeye.calibration.contributions import Contribution, contributions
 from handeye.calibration.results import CalibrationResult, Influence, PartChange
@@ -50,6 +52,11 @@ def parts_section(result: CalibrationResult) -> list[Section]:
     """Which part of the robot was off, and by how much."""
     if not result.parts:
         return []
+    return [Section("Which part was off", [parts_table(result.parts)])]
+
+
+def parts_table(parts: Sequence[PartChange]) -> Table:
+    """Parts of the robot, most important first, and how far each moves the hand."""
     rows = [
         [
             part.part,
@@ -58,25 +65,18 @@ def parts_section(result: CalibrationResult) -> list[Section]:
             part.unknown,
             _change(part),
         ]
-        for part in result.parts[:_PARTS]
+        for part in parts[:_PARTS]
     ]
-    left = len(result.parts) - len(rows)
+    left = len(parts) - len(rows)
     more = f" {left} more parts move it less." if left else ""
-    return [
-        Section(
-            "Which part was off",
-            [
-                Table(
-                    ("Part", "Moves the hand [mm]", "Known", "Its most changed number", "Change"),
-                    rows,
-                    caption="How far the change of each part moves the hand, root mean square over "
-                    "the rows, and how much of what was unknown of it the rows have told. Parts "
-                    f"that rows can hardly tell apart may move it far in opposite ways.{more}",
-                    words=frozenset({0, 3}),
-                )
-            ],
-        )
-    ]
+    return Table(
+        ("Part", "Moves the hand [mm]", "Known", "Its most changed number", "Change"),
+        rows,
+        caption="How far the change of each part moves the hand, root mean square over the rows, "
+        "and how much of what was unknown of it the rows have told. Parts that rows can hardly "
+        f"tell apart may move it far in opposite ways.{more}",
+        words=frozenset({0, 3}),
+    )
 
 
 def _change(part: PartChange) -> str:

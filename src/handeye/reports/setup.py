@@ -11,6 +11,7 @@ from handeye.calibration.arm.measurements import (
 )
 from handeye.calibration.setups.run import SetupResult
 from handeye.calibration.setups.words import advice
+from handeye.reports.calibration_parts import parts_table
 from handeye.reports.figures import (
     error_distribution,
     error_in_space,
@@ -25,7 +26,6 @@ from handeye.reports.setup_tables import (
     in_words,
     numbers,
     open_section,
-    parts,
     rejected,
     worst,
 )
@@ -47,7 +47,7 @@ def setup_page(result: SetupResult, name: str, *, date: str = "") -> Page:
             Section("", [_tiles(channels, where), Prose(_said(advice(held_out=result.held_out)))]),
             Section("In numbers", [numbers(channels, result)]),
             Section("What was found beside the arm", [found(result)]),
-            Section("Which part of the arm was off", [parts(result)]),
+            Section("Which part of the arm was off", [parts_table(result.parts)]),
             *open_section(result),
             *(_pictures(channel, result) for channel in channels),
             Section("Rows to look at first", [worst(result)]),

@@ -94,29 +94,6 @@ def found(result: SetupResult) -> Table:
     )
 
 
-def parts(result: SetupResult) -> Table:
-    """Which part of the arm was off, and by how much."""
-    rows = [
-        [
-            part.part,
-            significant(1e3 * part.moves, 3),
-            f"{100 * part.known:.0f} %",
-            part.unknown,
-            f"{part.change:+.3g} ± {part.std:.2g} {part.unit}".rstrip(),
-        ]
-        for part in result.parts[:_PARTS]
-    ]
-    left = len(result.parts) - len(rows)
-    return Table(
-        ("Part", "Moves the hand [mm]", "Known", "Its most changed number", "Change"),
-        rows,
-        caption="How far the change of each part moves what the flange carries, root mean square "
-        "over the rows. Parts that rows can hardly tell apart may move it far in opposite ways."
-        + (f" {left} more parts move it less." if left else ""),
-        words=frozenset({0, 3}),
-    )
-
-
 def open_section(result: SetupResult) -> list[Section]:
     """What the rows do not determine."""
     lines = result.undetermined

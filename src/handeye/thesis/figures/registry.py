@@ -20,6 +20,7 @@ from handeye.thesis.figures.functions import BEGINNINGS, FUNCTIONS
 from handeye.thesis.figures.hardware import HARDWARE
 from handeye.thesis.figures.noise import NOISE
 from handeye.thesis.figures.plant import PLANT
+from handeye.thesis.figures.real_arms import REAL
 from handeye.thesis.figures.scenarios import SCENARIOS
 from handeye.thesis.figures.tracking import TRACKING
 from handeye.thesis.figures.width import WIDTH
@@ -37,6 +38,7 @@ TOPICS: dict[str, list[Drawn]] = {
     "Learning to catch": [*PULSE, *CURVES, *EXAMPLES, *RESPONSES],
     "Beyond the thesis: the combined calibrator": BEYOND,
     "Beyond the thesis: the improved catcher": [*WORTH, *CHOSEN],
+    "Beyond the thesis: real arms": REAL,
     "Earlier hand-eye learners": EARLIER,
     "Networks as functions": [*FUNCTIONS, *BEGINNINGS],
     "On a chip": HARDWARE,
